@@ -3,6 +3,7 @@ import json
 import os
 import pathlib
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -28,10 +29,12 @@ def curves(umov, scene, tmp_path):
     return ["a.csv", "bad.csv", "b.csv", "c.csv"]
 
 
+#: Materials that are known: what many curves share does not depend on it, and each takes a third of the time.
+KNOWN = ("--slope-sd", "0", "--reflectance-sd", "0", "--haze-sd", "0")
+
+
 def asked(curves):
-    """Materials that are known: what many curves share does not depend on it, and each takes a third of the time."""
-    return ["invert", "pose", *curves, "--scenario", "fit.toml", "--grid", "2000", "--visibility", "masks",
-            "--slope-sd", "0", "--reflectance-sd", "0", "--haze-sd", "0"]
+    return ["invert", "pose", *curves, "--scenario", "fit.toml", "--grid", "2000", "--visibility", "masks", *KNOWN]
 
 
 def error_of(done):
@@ -61,10 +64,26 @@ def test_each_curve_has_the_answer_that_it_has_alone(umov, curves, tmp_path):
             assert rows == data(tmp_path / f"alone/{name}.ecsv")[1:], name
 
 
+@pytest.fixture(scope="module")
+def answered(tmp_path_factory):
+    """The folder of all curves answered in one go, and what was told of it: the same for every test, as the curves are."""
+    return {"folder": tmp_path_factory.mktemp("answered") / "plain", "done": None}
+
+
+@pytest.fixture
+def plain(umov, curves, tmp_path, answered):
+    """`plain/`, the answers of all curves in one go; what was told of them."""
+    if answered["done"] is None:
+        answered["done"] = umov(*asked(curves), "--each", "-o", "plain")
+        shutil.copytree(tmp_path / "plain", answered["folder"])
+    else:
+        shutil.copytree(answered["folder"], tmp_path / "plain")
+    return answered["done"]
+
+
 @pytest.mark.parametrize("per_shard", [1, 3])
-def test_curves_in_parts_are_the_plain_ones(umov, curves, tmp_path, per_shard):
+def test_curves_in_parts_are_the_plain_ones(umov, curves, plain, tmp_path, per_shard):
     command = [*asked(curves), "--each"]
-    plain = umov(*command, "-o", "plain")
     assert plain.code == 3
     done = umov("scale", "run", "--per-shard", per_shard, "job", *command)
     assert done.code == 3 and error_of(done) == error_of(plain)  # all shards are done: what a curve lacks stands in its row
@@ -104,9 +123,8 @@ def test_tables_without_a_row_are_the_plain_ones(umov, scene, tmp_path, per_shar
         assert (tmp_path / f"modes.{suffix}").exists()
 
 
-def test_shards_of_curves_are_its_rows(umov, curves, tmp_path):
+def test_shards_of_curves_are_its_rows(umov, curves, plain, tmp_path):
     command = [*asked(curves), "--each"]
-    umov(*command, "-o", "plain")
     rows = []
     for k in range(3):
         done = umov(*command, "--shard", f"{k}/3", "-o", f"part_{k}")
@@ -133,7 +151,7 @@ def test_objects_are_made_ready_once(umov, curves, library, tmp_path):
     """A mesh that goes away when the first curve is answered is missed by none of the others, whose answers are those that
     they have alone."""
     command = ["identify", "a.csv", "b.csv", "c.csv", "--each", "--library", "lib", "--scenario", "place.toml", "--grid", "2000",
-               "--objects", "plain.toml"]
+               "--objects", "plain.toml", *KNOWN]
     assert umov("scale", "lock", "--per-shard", 1, "job", *command).code == 0
     alone = [umov("identify", name, *command[5:], "-o", name + ".out") for name in ("a.csv", "b.csv", "c.csv")]
     assert all(one.code in (0, 4) for one in alone), alone[0].err
