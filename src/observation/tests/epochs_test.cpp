@@ -47,6 +47,24 @@ TEST(TimeGrid, RefusesWhatIsNoSpan) {
   }
 }
 
+// Epochs of one's own are kept as they are, each once and in order.
+TEST(TimeGrid, OwnEpochsAreTheGrid) {
+  EpochSpan span = by_day.span(60, 20);
+  for (const double s : {0.25, 0.5, 41.0})
+    span.own.push_back(plus_seconds(span.start, s));
+  const auto grid = time_grid(span);
+  ASSERT_TRUE(grid);
+  ASSERT_EQ(grid->size(), 3u);
+  EXPECT_EQ(seconds_between((*grid)[2], span.own[2]), 0);
+  for (const std::size_t twice : {1u, 0u}) { // the same again, and one that lies before
+    EpochSpan wrong = span;
+    wrong.own[2] = wrong.own[twice];
+    const auto refused = time_grid(wrong);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("epoch 3 is"), std::string::npos);
+  }
+}
+
 TEST(KeptEpochs, AreThoseAboveTheAltitudeInTwoPasses) {
   const EpochFilter only = above_30_deg();
   const auto kept = keep_epochs(track_of(by_day), by_day.span(1200, 10), only, 1, no_cancel);
