@@ -211,7 +211,7 @@ def _triangles(part: Any, unit: str, group: str) -> tuple[Any, Any, list[str]]:
     """Vertices, triangles and the group of each."""
     vertices, faces, *more = (part.vertices, part.faces) if _is_mesh(part) else part
     vertices = joined(vertices, "vertices")
-    points = number_array(in_unit(vertices, "vertices", unit) if hasattr(vertices, "to_value") else vertices, "vertices")
+    points = number_array(in_unit(vertices, "vertices", unit) if hasattr(vertices, "to_value") and hasattr(vertices, "unit") else vertices, "vertices")
     try:
         if np.ma.is_masked(faces):
             raise ValueError("some of them are masked")
