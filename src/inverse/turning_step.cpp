@@ -82,8 +82,7 @@ Turning stepped(const Turning &from, const Step &step, double span_s) {
   if (step.size() < 6)
     return {turned(from.attitude, part(step, 0)), from.rate_rad_s};
   if (!has_axis(from, span_s))
-    return {turned(from.attitude, part(step, 0)),
-            from.rate_rad_s + part(step, 3) * (1 / span_s)};
+    return {turned(from.attitude, part(step, 0)), from.rate_rad_s + part(step, 3) * (1 / span_s)};
   const double rate = norm(from.rate_rad_s);
   const Vec3<Body> axis = from.rate_rad_s * (1 / rate);
   const auto [roll, tilt] = split(part(step, 0), axis);
