@@ -25,6 +25,7 @@ struct ScenarioTime {
   std::vector<Epoch<Utc>> epochs; ///< of one's own, in place of even steps; empty: none
   EpochFilter only;
 
+  /// As jobs take it.
   [[nodiscard]] EpochSpan span() const { return {start, stop, step_s, epochs}; }
 };
 
