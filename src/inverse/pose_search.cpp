@@ -134,9 +134,11 @@ std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_
                   fit.is_converged};
     const bool is_known = std::ranges::any_of(out, [&](const PoseMode &other) {
       const inverse::Step apart = inverse::step_between(other.turning, mode.turning, 6, span_s);
-      const double sd = std::min(other.sd_rad(), mode.sd_rad());
+      const double near = std::max(1 * degree, 3 * std::min(other.sd_rad(), mode.sd_rad()));
       // Another spin with the same attitude at second 0 is another mode.
-      return apart.head(3).norm() < std::max(1 * degree, 3 * sd) && apart.tail(3).norm() < 0.2;
+      const double turns = std::abs(norm(other.turning.rate_rad_s) - norm(mode.turning.rate_rad_s));
+      return apart.head(3).norm() < near && apart.tail(3).norm() < std::max(near, 0.2) &&
+             turns * span_s < 0.2;
     });
     if (is_known)
       continue;
@@ -481,8 +483,8 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
 }
 
 Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options) {
-  // Ten times the measurements: no last step makes an explanation of that.
-  constexpr double far = 10;
+  // Ten standard deviations in each measurement: no last step makes an explanation of that.
+  constexpr double far = 100;
   FoundErrors errors(models.last, options);
   UMOV_ASSIGN(found, find_poses(models, errors, options,
                                 far * static_cast<double>(errors.likelihood().measurements())));

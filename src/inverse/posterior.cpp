@@ -14,7 +14,8 @@
 namespace umov::inverse {
 namespace {
 
-constexpr double tail = 5; // degrees of freedom of the proposals
+constexpr double tail = 5;           // degrees of freedom of the proposals
+constexpr double no_weight = -1e300; // ln of it: of what is no number
 
 /// A mode as a density to draw from, in the units of Step.
 struct Proposal {
@@ -52,9 +53,8 @@ double log_density(const std::vector<Proposal> &mixture, const Turning &at, doub
 
 /// Weights from logarithms, and what they add up to. What has none (NaN) weighs nothing.
 double normalize(std::vector<PoseSample> &draws, std::vector<double> log_weight) {
-  constexpr double none = -1e300;
   for (double &one : log_weight)
-    one = one > none ? one : none;
+    one = one > no_weight ? one : no_weight;
   const double highest = *std::ranges::max_element(log_weight);
   double sum = 0;
   for (std::size_t k = 0; k < draws.size(); ++k)
@@ -87,51 +87,57 @@ std::size_t nearest(const std::vector<Proposal> &mixture, const Turning &at, dou
   return best;
 }
 
-/// Weights to the power that leaves them worth `wanted` samples; all alike where they are too few
-/// for it. Where a proposal misses the shape of a peak a few draws hold all of the weight, and say
-/// nothing of a covariance; what lies between proposal and peak leads from one to the other.
-std::vector<double> evened(const std::vector<double> &weights, double wanted) {
+/// Weights, from their logarithms, to the power that leaves them worth `wanted` samples; none where
+/// no power does. Where a proposal misses the shape of a peak a few draws hold all of the weight,
+/// and say nothing of a covariance; what lies between proposal and peak leads from one to the
+/// other.
+std::vector<double> evened(const std::vector<double> &log_weights, double wanted) {
   std::vector<double> out;
-  const double highest = *std::ranges::max_element(weights);
+  const double highest = *std::ranges::max_element(log_weights);
   const auto effective = [&](double power) {
     double sum = 0, squares = 0;
     out.clear();
-    for (const double w : weights) {
-      out.push_back(std::pow(w / highest, power));
+    for (const double w : log_weights) {
+      out.push_back(w > no_weight ? std::exp(power * (w - highest)) : 0);
       sum += out.back();
       squares += out.back() * out.back();
     }
     return sum * sum / squares;
   };
-  if (!(highest > 0) || effective(1) >= wanted)
-    return weights;
+  if (!(highest > no_weight))
+    return {};
+  if (effective(1) >= wanted)
+    return out;
   double low = 0, high = 1;
-  constexpr int halvings = 20;
+  constexpr int halvings = 40;
   for (int k = 0; k < halvings; ++k) {
     const double middle = (low + high) / 2;
     (effective(middle) >= wanted ? low : high) = middle;
   }
-  effective(low);
-  return out;
+  return effective(low) >= wanted ? out : std::vector<double>();
 }
 
 /// Weights and covariances of modes from their samples.
 void update(std::vector<PoseMode> &modes, const std::vector<Proposal> &mixture,
-            const std::vector<PoseSample> &draws, double span_s) {
+            const std::vector<PoseSample> &draws, const std::vector<double> &log_weights,
+            double span_s) {
   const Eigen::Index n = mixture.front().root.rows();
   const double wanted = 10 * static_cast<double>(n); // that tell a covariance
-  std::vector<std::vector<double>> weights(modes.size());
+  std::vector<std::vector<double>> own(modes.size());
   std::vector<std::vector<Step>> steps(modes.size());
-  for (const PoseSample &s : draws) {
-    const std::size_t m = nearest(mixture, s.turning, span_s);
-    weights[m].push_back(s.weight);
-    steps[m].push_back(step_between(mixture[m].centre, s.turning, n, span_s));
+  for (PoseMode &mode : modes)
+    mode.weight = 0;
+  for (std::size_t k = 0; k < draws.size(); ++k) {
+    const std::size_t m = nearest(mixture, draws[k].turning, span_s);
+    modes[m].weight += draws[k].weight;
+    own[m].push_back(log_weights[k]);
+    steps[m].push_back(step_between(mixture[m].centre, draws[k].turning, n, span_s));
   }
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    modes[m].weight = std::accumulate(weights[m].begin(), weights[m].end(), 0.0);
-    if (!(modes[m].weight > 0) || static_cast<double>(weights[m].size()) < wanted)
+    const std::vector<double> even =
+        own[m].empty() ? std::vector<double>() : evened(own[m], wanted);
+    if (even.empty())
       continue;
-    const std::vector<double> even = evened(weights[m], wanted);
     Eigen::MatrixXd second = Eigen::MatrixXd::Zero(n, n);
     for (std::size_t k = 0; k < even.size(); ++k)
       second += even[k] * steps[m][k] * steps[m][k].transpose();
@@ -253,7 +259,7 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
     out.log_evidence = normalize(out.draws, log_weight) -
                        std::log(static_cast<double>(drawn.size())) - std::log(8 * pi * pi);
     out.effective = effective_size(out.draws);
-    update(modes, mixture, out.draws, span);
+    update(modes, mixture, out.draws, log_weight, span);
   }
   return out;
 }

@@ -196,7 +196,7 @@ void PeriodSearch::fan_out(std::span<const TurningFit> fits, double span_s, doub
 bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
   const auto &curve = coarse_.curve();
   std::size_t kept = 300;
-  constexpr std::size_t epochs_max = 120, last = 10;
+  constexpr std::size_t epochs_max = 120, last = 30;
   bool is_fanned = false;
   for (std::optional<double> reach_s = 1.25 * period_s_; reach_s;) {
     const auto epochs = within(curve, *reach_s, epochs_max);
@@ -233,7 +233,7 @@ std::vector<Candidate> PeriodSearch::run() {
   if (!look_at_grid(found) || !lengthen(found))
     return {};
   std::vector<Candidate> out;
-  constexpr std::size_t most = 8;
+  constexpr std::size_t most = 16;
   for (const Candidate &c : found)
     if (out.size() < most && std::ranges::none_of(out, [&](const Candidate &o) {
           return is_near(o.turning, c.turning, 2 * degree, inverse::span_of(coarse_.curve()));
@@ -317,7 +317,7 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
     found_of_all.insert(found_of_all.end(), found.begin(), found.end());
   }
   // All were compared at the same epochs: the last fits, by the light itself, are for the best.
-  constexpr std::size_t most = 12;
+  constexpr std::size_t most = 24;
   keep_best(found_of_all, most);
   std::vector<Turning> starts;
   for (const Candidate &c : found_of_all)

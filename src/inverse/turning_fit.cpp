@@ -118,8 +118,8 @@ void keep_best(std::vector<Running> &fits, std::size_t count, double span_s) {
 }
 
 /// Takes away fits that would not reach the best even if they went on to gain twice as fast as
-/// since the last cut; a peak that far below holds less than e^-15 of the probability.
-void drop_hopeless(std::vector<Running> &fits, int cuts_left) {
+/// since the last cut; a peak that far below holds e^-30 of the probability.
+void drop_hopeless(std::vector<Running> &fits, double cuts_left) {
   constexpr double far = 60, hope = 2; // chi-square; beside the gain seen
   double best = std::numeric_limits<double>::infinity();
   for (const Running &one : fits)
@@ -178,7 +178,7 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     if (plan.cut_after > 0 && iteration > 0 && iteration % plan.cut_after == 0) {
       keep_best(fits, plan.kept, span);
       if (plan.drops_hopeless)
-        drop_hopeless(fits, (plan.iterations - iteration) / plan.cut_after);
+        drop_hopeless(fits, static_cast<double>(plan.iterations - iteration) / plan.cut_after);
     }
     const auto active = moving(fits);
     if (active.empty())

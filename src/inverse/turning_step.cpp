@@ -37,11 +37,19 @@ Vec3<Body> tilted(const Vec3<Body> &axis, const Vec3<Body> &by) {
   return axis * std::cos(angle) + cross(by, axis) * sinc(angle);
 }
 
-/// The shortest rotation vector that turns one unit vector into another.
+/// Some unit vector across another.
+Vec3<Body> any_across(const Vec3<Body> &v) {
+  return normalized(std::abs(v.x) < 0.6 ? cross(v, {1, 0, 0}) : cross(v, {0, 1, 0}));
+}
+
+/// The shortest rotation vector that turns one unit vector into another; one of them where they
+/// point opposite ways.
 Vec3<Body> tilt_between(const Vec3<Body> &from, const Vec3<Body> &to) {
   const Vec3<Body> normal = cross(from, to);
   const double sine = norm(normal);
-  return sine > 0 ? normal * (angle_between(from, to) / sine) : Vec3<Body>{0, 0, 0};
+  if (sine > 0)
+    return normal * (angle_between(from, to) / sine);
+  return dot(from, to) < 0 ? any_across(from) * pi : Vec3<Body>{0, 0, 0};
 }
 
 /// The vector of a turn that is a tilt across the axis after a turn about it.

@@ -21,7 +21,8 @@ using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 /// A turning after a step. A body that turns by less than a radian over the span has no axis to
 /// speak of: its last three numbers are the change of the rate vector times the span.
 Turning stepped(const Turning &from, const Step &step, double span_s);
-/// The step, of 3 or 6 numbers, that leads from one to the other.
+/// The shortest step, of 3 or 6 numbers, that leads from one to the other: that of `stepped` where
+/// its tilts and its turn are less than pi and the rate keeps its sense.
 Step step_between(const Turning &from, const Turning &to, Eigen::Index size, double span_s);
 /// ln of the volume of attitudes, and of rates in radians per span, that a volume of steps has
 /// where a step leads to.

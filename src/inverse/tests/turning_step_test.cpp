@@ -37,6 +37,16 @@ TEST(TurningStep, LeadsThereAndBack) {
     }
 }
 
+/// Spins of one attitude about opposite axes are half a turn of the body apart, not one spin.
+TEST(TurningStep, OppositeSpinsAreApart) {
+  const Turning other{quick.attitude, quick.rate_rad_s * -1};
+  const Step step = inverse::step_between(quick, other, 6, span);
+  EXPECT_NEAR(step.tail(3).norm(), pi, 1e-9);
+  const Turning there = inverse::stepped(quick, step, span);
+  EXPECT_LT(norm(there.rate_rad_s - other.rate_rad_s), 1e-12);
+  EXPECT_LT(angle_between(there.attitude, other.attitude), 1e-9);
+}
+
 /// Two turns by one angle about axes that are d apart differ by a turn of at most 2 d.
 TEST(TurningStep, TiltsLeaveTheNumberOfTurns) {
   constexpr double tilt = 0.01;
