@@ -48,6 +48,8 @@ double at(double nm, std::vector<double> Gases::*column) {
 
 /// Linear between the points of a table.
 double at(double nm, const MeasuredExtinction &table) {
+  if (table.nm.empty() || table.nm.size() != table.mag.size())
+    return std::nan("");
   if (nm <= table.nm.front())
     return table.mag.front();
   if (nm >= table.nm.back())

@@ -35,6 +35,12 @@ Result<BandResponse> curve_band(const Passband &curve) {
 Result<BandObserver> BandObserver::make(const Instrument &instrument, BandResponse band,
                                         const ObservingConditions &conditions,
                                         const std::vector<std::complex<double>> &mirror_eta) {
+  if (const auto &table = conditions.air.measured;
+      table && (table->nm.empty() || table->nm.size() != table->mag.size()))
+    return fail(ErrorCode::BadInput,
+                fmt::format("measured extinction of {} wavelengths and {} magnitudes: as many of "
+                            "both, one or more, were expected",
+                            table->nm.size(), table->mag.size()));
   BandObserver out;
   out.instrument_ = instrument;
   out.conditions_ = conditions;
@@ -218,7 +224,9 @@ double BandObserver::transparency(const ExposurePlan &plan, const ExposureLight 
   const bool is_apart = instrument_.polarimeter.has_separate_pupils;
   const auto pupil = is_apart ? static_cast<std::uint32_t>(channel) : 0;
   Draws air({conditions_.seed, conditions_.object, plan.index, pupil, Stream::Air});
-  return light.transparency * (sd > 0 ? std::exp(sd * air.normal() - sd * sd / 2) : 1);
+  const double variance = std::log1p(sd * sd); // of the logarithm, for sd to be the factor's
+  return light.transparency *
+         (sd > 0 ? std::exp(std::sqrt(variance) * air.normal() - variance / 2) : 1);
 }
 
 Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &plan,

@@ -6,7 +6,8 @@
 
 namespace umov {
 
-/// Extinction as a site has measured it.
+/// Extinction as a site has measured it: as many wavelengths as magnitudes, one or more. Of
+/// another table there is no number (NaN), and a BandObserver refuses it.
 struct MeasuredExtinction {
   std::vector<double> nm, mag; ///< at increasing wavelengths, per air mass; linear in between
 };

@@ -208,10 +208,48 @@ TEST(BandObserver, ScintillationHasOsbornsVariance) {
     s += x / trials, ss += x * x / trials, mean = n->at(0).mean_star;
   }
   const double sd = scintillation_sd(*windy.scintillation, .2794, .1, 1);
-  const double log_normal = std::expm1(sd * sd); // of mean 1; beside it the photons' own 1/N
+  // Beside it the photons' own 1/N.
   // The variance of 1e5 numbers is known to .45 %; and the mean to sd/316.
-  EXPECT_NEAR((ss - s * s - 1 / mean) / log_normal, 1, .02);
+  EXPECT_NEAR((ss - s * s - 1 / mean) / (sd * sd), 1, .02);
   EXPECT_NEAR(s, 0, 4 * sd / std::sqrt(double(trials)));
+}
+
+/// Strong scintillation too has the standard deviation that is told beside the counts.
+TEST(BandObserver, TheToldScatterOfStrongScintillationIsThatOfTheCounts) {
+  const ObservingConditions windy = flickering_air();
+  Instrument instrument = camera_without_noise();
+  instrument.telescope.aperture_m = .1;
+  instrument.telescope.obstruction = 0;
+  const BandObserver one = observer(instrument, windy);
+  ExposureLight light = star(1e-9, 0, 0);
+  light.airmass = 6;
+  constexpr double exposure_s = .1;
+  const double sd = scintillation_sd(*windy.scintillation, .1, exposure_s, light.airmass);
+  ASSERT_GT(sd, .5);
+  ASSERT_LT(sd, 1);
+  constexpr int trials = 100'000;
+  double s = 0, ss = 0;
+  for (std::uint32_t k = 0; k < trials; ++k) {
+    const double x = one.transparency({k, exposure_s, {}}, light, 0) - 1;
+    s += x / trials, ss += x * x / trials;
+  }
+  // A log-normal number's excess of the fourth moment, w = 1 + sd^2: four standard errors each.
+  const double w = 1 + sd * sd;
+  const double fourth = w * w * w * w + 2 * w * w * w + 3 * w * w - 3;
+  EXPECT_NEAR((ss - s * s) / (sd * sd), 1, 4 * std::sqrt((fourth - 1) / trials));
+  EXPECT_NEAR(s, 0, 4 * sd / std::sqrt(double(trials)));
+}
+
+TEST(BandObserver, AMeasuredExtinctionWithoutNumbersIsRefused) {
+  ObservingConditions conditions = no_air();
+  for (const MeasuredExtinction &table :
+       {MeasuredExtinction{}, MeasuredExtinction{{500, 600}, {.1}}}) {
+    conditions.air.measured = std::make_shared<const MeasuredExtinction>(table);
+    EXPECT_TRUE(std::isnan(extinction_mag(550, conditions.air)));
+    const auto made = BandObserver::make(camera(), *narrow_band("nm:550", 550, 10), conditions, {});
+    ASSERT_FALSE(made);
+    EXPECT_NE(made.error().message.find("as many of both"), std::string::npos);
+  }
 }
 
 TEST(BandObserver, ScintillationIsOneForOnePupil) {
