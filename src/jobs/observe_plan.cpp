@@ -154,7 +154,8 @@ Result<ObservedBands> observed_bands(const Scenario &scenario) {
                   own.error().where.file.empty() ? Where{scenario.file} : own.error().where);
     bands = std::move(*own);
     if (scenario.air)
-      UMOV_TRY(check_air_reaches(bands, *scenario.air, scenario.place("observation.bands")));
+      UMOV_TRY(
+          check_air_reaches(bands, *scenario.air, scenario.place("observation.bands"), o.width_nm));
   }
   ObservedBands out;
   for (const Band &band : bands) {

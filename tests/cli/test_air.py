@@ -6,6 +6,7 @@ import pytest
 from astropy.table import Table
 
 from conftest import ROOT
+from sphere_over_maui import make_sphere, write_scene
 
 
 def run(umov, scenario, tmp_path, *changes):
@@ -91,6 +92,16 @@ def test_extinctions_that_are_refused(umov, scenario, tmp_path, table, told):
     done = umov("run", scenario(("alt_m = 3058", 'alt_m = 3058\natmosphere = { file = "k.csv" }'),
                                 ('set = "paper_rgb"', 'set = ["nm:550"]' if "550" in told else 'set = ["Bessell.B"]')))
     assert done.code == 3 and told in done.err and ("k.csv" in done.err or "scenario.toml:" in done.err), done.err
+
+
+@pytest.mark.parametrize("width, code", [(10, 0), (40, 3)])
+def test_a_table_reaches_over_the_width_of_a_band(umov, tmp_path, width, code):
+    """nm:550 of 40 nm ends at 570, beyond a table that ends at 560."""
+    make_sphere(umov, 1, 24)
+    (tmp_path / "k.csv").write_text("wavelength_nm,k_mag\n500,0.2\n560,0.14\n")
+    done = umov("observe", write_scene(tmp_path, f'bands = ["nm:550"]\nwidth_nm = {width}\nexposure_s = 1',
+                                       atmosphere='file = "k.csv"\nseeing = { arcsec = 3 }'))
+    assert done.code == code and ("from 530 to 570 nm" in done.err) == (code == 3), done.err
 
 
 def test_a_table_of_extinction_is_all_of_it(umov, scenario, tmp_path):

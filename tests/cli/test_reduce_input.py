@@ -299,7 +299,7 @@ def changed(column, value):
 
 
 @pytest.mark.parametrize("column, value, told", [
-    ("airmass", "-1.2", "airmass = -1.2; 1 or more was expected"), ("k_mag", "12", "k_mag = 12"), ("phase_angle", "500", "phase_angle = 500"), ("dec", "95", "dec = 95"), ("range", "-5", "range = -5"), ("w1", "0.6", "less than no counts"), ("w3", "-0.7", "less than no counts")])
+    ("airmass", "-1.2", "airmass = -1.2; 1 or more was expected"), ("k_mag", "25", "k_mag = 25; -1 to 20"), ("phase_angle", "500", "phase_angle = 500"), ("dec", "95", "dec = 95"), ("range", "-5", "range = -5"), ("w1", "0.6", "less than no counts"), ("w3", "-0.7", "less than no counts")])
 def test_rows_that_no_telescope_has(umov, tmp_path, column, value, told):
     (tmp_path / "c.csv").write_text(changed(column, value))
     done = umov("reduce", "c.csv")

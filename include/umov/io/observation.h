@@ -57,8 +57,9 @@ inline constexpr std::array<double, 2> sky_mag_range{-5, 40};
 Result<void> check_aperture(const std::string &name, double fwhm);
 
 /// BadInput for a band at which nothing is known of what air takes: at all, or by its table.
+/// `width_nm`: of the box that a band without a curve is observed as, 0 where it is one wavelength.
 Result<void> check_air_reaches(const std::vector<Band> &bands, const SiteAir &air,
-                               const Where &where);
+                               const Where &where, double width_nm = 0);
 
 /// Names of the instruments that are compiled in.
 std::vector<std::string> instrument_names();

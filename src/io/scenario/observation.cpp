@@ -242,6 +242,13 @@ Result<void> read_sequence(const Node &node, ScenarioObservation &out) {
 Result<void> read_frames(const Node &node, const std::string &folder, ScenarioObservation &out) {
   UMOV_ASSIGN(level, node.choice("level", "aperture", {"aperture", "image"}));
   out.makes_frames = level == "image";
+  if (const double dead = out.instrument.detector.dead_time_s; out.makes_frames && dead > 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("level = \"image\" with detector.dead_time_s = {:g}: what a counter's "
+                            "pixels miss is not put back into frames; level = \"aperture\", or "
+                            "dead_time_s = 0, was expected",
+                            dead),
+                node.where("level"));
   UMOV_ASSIGN(photometry, node.choice("photometry", "aperture", {"aperture", "image"}));
   out.photometry = photometry == "image" ? FramePhotometry::Image : FramePhotometry::Aperture;
   out.stars = node.text("stars", "");
@@ -335,20 +342,21 @@ Result<void> check_aperture(const std::string &name, double fwhm) {
 }
 
 Result<void> check_air_reaches(const std::vector<Band> &bands, const SiteAir &air,
-                               const Where &where) {
+                               const Where &where, double width_nm) {
   for (const Band &band : bands) {
-    const double nm = band.wavelength.nm();
-    if (!air.air.measured && !(nm >= air_from_nm && nm <= air_to_nm))
+    const double nm = band.wavelength.nm(), half = band.curve ? 0 : width_nm / 2;
+    if (!air.air.measured && !(nm - half >= air_from_nm && nm + half <= air_to_nm))
       return fail(
           ErrorCode::BadInput,
-          fmt::format("band \"{}\" is at {:g} nm: what air takes is known from {:g} to {:g} "
+          fmt::format("band \"{}\" is at {:g} nm{}: what air takes is known from {:g} to {:g} "
                       "nm. Take another band, or [observer] atmosphere = \"none\"",
-                      band.name, nm, air_from_nm, air_to_nm),
+                      band.name, nm, half > 0 ? fmt::format(", {:g} nm wide", width_nm) : "",
+                      air_from_nm, air_to_nm),
           where);
     if (!air.air.measured)
       continue;
-    const double first = band.curve ? band.curve->wavelength_nm.front() : nm;
-    const double last = band.curve ? band.curve->wavelength_nm.back() : nm;
+    const double first = band.curve ? band.curve->wavelength_nm.front() : nm - half;
+    const double last = band.curve ? band.curve->wavelength_nm.back() : nm + half;
     const std::vector<double> &known = air.air.measured->nm;
     if (first < known.front() || last > known.back())
       return fail(ErrorCode::BadInput,

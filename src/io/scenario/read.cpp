@@ -507,7 +507,8 @@ Result<void> read_air(const Node &top, const fs::path &folder, Scenario &out) {
   out.observation = observation;
   const bool has_bands_of_its_own = observation && !observation->bands.empty();
   if (air && !has_bands_of_its_own)
-    return check_air_reaches(out.bands, *air, top.where("bands"));
+    return check_air_reaches(out.bands, *air, top.where("bands"),
+                             observation ? observation->width_nm : 0);
   return {};
 }
 

@@ -283,10 +283,10 @@ Result<void> check_row(const CountRow &row, const Where &where) {
                             row.phase_angle_deg),
                 where);
   // At the Earth's surface light of 300 nm loses four, and a fit may find a little less than none.
-  if (row.k_mag < -1 || row.k_mag > 10)
+  if (row.k_mag < -1 || row.k_mag > 20)
     return fail(
         ErrorCode::BadInput,
-        fmt::format("k_mag = {}; -1 to 10 magnitudes per air mass were expected (0.1 to 0.5 "
+        fmt::format("k_mag = {}; -1 to 20 magnitudes per air mass were expected (0.1 to 0.5 "
                     "as a rule), or an empty cell",
                     row.k_mag),
         where);
