@@ -5,6 +5,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <tuple>
 #include <umov/core/text.h>
 #include <umov/io/table.h>
@@ -133,16 +134,19 @@ Result<PhotometricCalibration> photometry_of(const std::vector<PhotometricStanda
 /// another unit.
 Result<void> check_efficiency(const PolarimeterCalibration &found) {
   const double efficiency = std::abs(found.factor);
+  const bool has_sd = std::isfinite(found.factor_sd);
+  const double sd = has_sd ? found.factor_sd : std::numeric_limits<double>::infinity();
   constexpr double most = 1.2, surely = 2, least = .02, deviations = 3;
-  const bool is_more = efficiency > surely || efficiency - deviations * found.factor_sd > most;
-  if (!is_more && efficiency + deviations * found.factor_sd > least)
+  const bool is_more = efficiency > surely || efficiency - deviations * sd > most;
+  if (!is_more && efficiency + deviations * sd > least)
     return {};
   return fail(
       ErrorCode::BadInput,
-      fmt::format("efficiency = {:.3g} +- {:.2g}: the counts are polarized by {:.3g} times "
+      fmt::format("efficiency = {:.3g}{}: the counts are polarized by {:.3g} times "
                   "what p_percent says; {:g} to {:g} was expected. Are the standards in per "
                   "cent (4.893, not 0.04893 nor 489.3), and the names those of the stars?",
-                  efficiency, found.factor_sd, efficiency, least, most));
+                  efficiency, has_sd ? fmt::format(" +- {:.2g}", sd) : "", efficiency, least,
+                  most));
 }
 
 /// Both fits; where one of them works, what hinders the other is a warning.
@@ -151,13 +155,13 @@ Result<void> fit(const Measured &data, bool has_second_order, CalibrationFile &o
   std::vector<std::string> hindered;
   if (!data.polarized.empty()) {
     const auto found = calibrate_polarimeter(data.polarized);
-    if (found)
-      UMOV_TRY(check_efficiency(*found));
-    if (found) {
+    const Result<void> fits =
+        found ? check_efficiency(*found) : Result<void>(tl::unexpected(found.error()));
+    if (fits) {
       out.calibration = *found;
       warn_of_standards(data.polarized, *found, diagnostics);
     } else {
-      hindered.push_back(found.error().message);
+      hindered.push_back(fits.error().message);
     }
   }
   if (!data.bright.empty()) {
