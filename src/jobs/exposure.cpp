@@ -2,6 +2,7 @@
 
 #include "jobs/exposure_rates.h"
 #include "jobs/observe_plan.h"
+#include "jobs/observe_warnings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ Result<Band> named_band(const ExposureRequest &r) {
   if (bands.size() != 1)
     return fail(ErrorCode::Usage, fmt::format("--band {} is a group of {} bands; name one, as {}",
                                               r.band, bands.size(), bands.front().name));
-  UMOV_TRY(check_air_reaches(bands, {}, {}));
+  UMOV_TRY(check_air_reaches(bands, {}, {}, r.width_nm));
   return bands.front();
 }
 
@@ -458,6 +459,10 @@ Result<Table> exposure(const ExposureRequest &r) {
     table.note("warning", fmt::format("--change-per-s {:g} says nothing to a polarimeter of type "
                                       "\"{}\": channels of an exposure see the same change",
                                       r.change_per_s, name_of(polarimeter.type)));
+  if (std::string brief = brief_words(fmt::format("--exposure-s {:g}", r.exposure_s), r.exposure_s,
+                                      setup.instrument.telescope.aperture_m);
+      r.exposure_s > 0 && !brief.empty())
+    table.note("warning", std::move(brief));
   return table;
 }
 

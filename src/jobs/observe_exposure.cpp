@@ -129,13 +129,15 @@ double stretch_of(const Setup &s, const Exposure &e, std::span<const TrackPoint>
 
 /// BadInput for what runs over a rolling shutter's rows nearly as fast as they are read: its
 /// exposure has no length, and its trail no light of one moment.
-Result<void> check_shutter(const Setup &s, const BandObserver &observer, double rate_rad_s) {
+Result<void> check_shutter(const Setup &s, const Exposure &e, std::span<const TrackPoint> points) {
   const Instrument &instrument = s.observation.instrument;
   const bool trails = instrument.telescope.tracking != Tracking::Satellite || !s.stars.empty();
-  const double rows_per_s = trail_length_px(rate_rad_s, 1, observer.pixel_arcsec());
+  if (!instrument.detector.has_rolling_shutter || !trails)
+    return {};
+  const double rows_per_s = FrameView(s, e).rows_per_s(points);
   const double of_readout = rolling_change(instrument.detector, rows_per_s);
   constexpr double most = 0.5;
-  if (!trails || of_readout <= most)
+  if (of_readout <= most)
     return {};
   return fail(ErrorCode::BadInput,
               fmt::format("trails run over {:.3g} rows a second, {:.2g} of what a rolling shutter "
@@ -155,7 +157,7 @@ Recorded record(const Setup &s, const Exposure &e, std::size_t number, const Lit
   Truths truths;
   ExposureLight light = arriving(s, e, number, lit, out, moments, truths);
   const std::span<const TrackPoint> points(&lit.points[number * s.nodes.size()], s.nodes.size());
-  if (const auto fits = check_shutter(s, observer, light.rate_rad_s); !fits) {
+  if (const auto fits = check_shutter(s, e, points); !fits) {
     out.error = fits.error();
     return out;
   }

@@ -60,6 +60,18 @@ double trail_feature_s(const ScenarioObservation &o, const Track &track,
   return fwhm_arcsec * arcsec / 2 / (fastest + earth_rad_s);
 }
 
+double longest_trail_px(const Setup &s, std::span<const Exposure> exposures) {
+  const Tracking tracking = s.observation.instrument.telescope.tracking;
+  double fastest = 0;
+  const std::size_t step = std::max<std::size_t>(1, exposures.size() / 50);
+  for (std::size_t k = 0; k < exposures.size(); k += step) {
+    const ObservingGeometry &g = exposures[k].middle;
+    if (const auto after = s.track.observe(plus_seconds(g.time, 0.1)))
+      fastest = std::max(fastest, rate_over_detector(tracking, g, *after));
+  }
+  return trail_length_px(fastest, s.observation.exposure_s, s.observers.front().pixel_arcsec());
+}
+
 double rate_over_detector(Tracking tracking, const ObservingGeometry &first,
                           const ObservingGeometry &last) {
   const double seconds = seconds_between(last.time, first.time);
@@ -124,6 +136,16 @@ double FrameView::stretch(Speed speed) const {
 
 double FrameView::stretch(std::span<const TrackPoint> points) const {
   return stretch(speed_of(points));
+}
+
+double FrameView::rows_per_s(std::span<const TrackPoint> points) const {
+  const double own = std::abs(speed_of(points).y);
+  if (s_.stars.empty())
+    return own;
+  const ObservingGeometry &first = points.front().geometry, &last = points.back().geometry;
+  const auto from = image(at(first), middle_.centre), to = image(at(last), middle_.centre);
+  const double seconds = seconds_between(last.time, first.time);
+  return from && to && seconds > 0 ? std::max(own, std::abs(to->y - from->y) / seconds) : own;
 }
 
 FrameView::Speed FrameView::speed_of(std::span<const TrackPoint> points) const {
@@ -234,6 +256,7 @@ FitsImage fits_of(const Setup &s, const Exposure &e, const Recorded &r) {
   const FramedExposure &framed = *r.frames;
   out.columns = framed.planes.front().frame.columns;
   out.rows = framed.planes.front().frame.rows;
+  const bool is_multiplied = i.detector.model == DetectorModel::Emccd;
   out.is_16_bit = has_converter(i.detector) && i.detector.bits <= 16;
   for (const FramePlane &plane : framed.planes)
     out.planes.emplace_back(plane.frame.adu);
@@ -246,7 +269,8 @@ FitsImage fits_of(const Setup &s, const Exposure &e, const Recorded &r) {
       {"INSTRUME", i.name.empty() ? std::string("in the scenario") : i.name, ""},
       {"FILTER", observer.band().name, ""},
       {"BUNIT", std::string("adu"), ""},
-      {"GAIN", has_converter(i.detector) ? i.detector.gain_e_adu : 1, "[electron/adu]"},
+      {"GAIN", has_converter(i.detector) ? i.detector.gain_e_adu : 1,
+       is_multiplied ? "[electron/adu] behind the register" : "[electron/adu]"},
       {"RDNOISE", has_converter(i.detector) ? i.detector.read_e : 0, "[electron]"},
       {"BIASLVL", zero_adu(i.detector), "[adu]"},
       {"AIRMASS", r.airmass, ""},
@@ -258,6 +282,8 @@ FitsImage fits_of(const Setup &s, const Exposure &e, const Recorded &r) {
       {"XAXISPA", r.axis.degrees(),
        fmt::format("[deg] of the x axis, {}", name_of(s.scenario.frame))},
       {"SETID", static_cast<std::int64_t>(e.planned.set), "as in counts"}};
+  if (is_multiplied)
+    out.cards.push_back({"EMGAIN", i.detector.em_gain, "of the register, before GAIN"});
   const auto &angles = i.polarimeter.angles_deg;
   if (i.polarimeter.type == PolarimeterType::Mosaic)
     for (std::size_t k = 0; k < 4; ++k)

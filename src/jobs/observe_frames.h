@@ -20,6 +20,9 @@ double trail_feature_s(const ScenarioObservation &observation, const Track &trac
 double rate_over_detector(Tracking tracking, const ObservingGeometry &first,
                           const ObservingGeometry &last);
 
+/// Of the exposures' trails over the detector [px]; of fifty of them.
+double longest_trail_px(const Setup &setup, std::span<const Exposure> exposures);
+
 /// Where things fall on the frames of one exposure.
 class FrameView {
 public:
@@ -31,6 +34,8 @@ public:
   /// How many times as long as its rows, under a rolling shutter, the object is exposed: it runs
   /// along with the read-out, or against it.
   [[nodiscard]] double stretch(std::span<const TrackPoint> points) const;
+  /// How many rows a second the fastest of what trails runs over, the object or the stars.
+  [[nodiscard]] double rows_per_s(std::span<const TrackPoint> points) const;
   /// The world coordinates of the frame in the middle of the exposure, as header lines.
   [[nodiscard]] std::vector<FitsCard> world() const;
 

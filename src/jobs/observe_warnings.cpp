@@ -1,5 +1,6 @@
 #include "jobs/observe_warnings.h"
 
+#include "jobs/observe_frames.h"
 #include "jobs/observed_object.h"
 
 #include <algorithm>
@@ -55,6 +56,29 @@ void warn_of_mosaic(const Setup &s, Diagnostics &diagnostics) {
   }
 }
 
+void warn_of_trails(const Setup &s, std::span<const Exposure> exposures, Diagnostics &diagnostics) {
+  const auto &size = s.observation.instrument.detector.size_px;
+  if (s.observation.makes_frames || size[0] < 1)
+    return;
+  const double diagonal = std::hypot(size[0], size[1]), trail = longest_trail_px(s, exposures);
+  if (trail <= diagonal)
+    return;
+  diagnostics.warn(fmt::format(
+      "{}: a trail of {:.0f} px, and detector.size_px = [{}, {}] ({:.0f} px across): its light and "
+      "its pixels are counted as if all of it fell on the detector. Shorten observation.exposure_s "
+      "= {:g}, or give telescope.tracking = \"satellite\"",
+      s.object, trail, size[0], size[1], diagonal, s.observation.exposure_s));
+}
+
+std::string brief_words(const std::string &name, double exposure_s, double aperture_m) {
+  const double crossing_s = wind_crossing_s(aperture_m);
+  if (!(exposure_s < crossing_s))
+    return "";
+  return fmt::format("{}: the air's pattern takes {:.2g} s to cross the aperture. Scintillation is "
+                     "taken as that of {:.2g} s",
+                     name, crossing_s, crossing_s);
+}
+
 void warn_of_setup(const Setup &s, Diagnostics &diagnostics) {
   const Detector &d = s.observation.instrument.detector;
   // The bias takes a little of it; a well that is a few per cent over is every maker's choice.
@@ -86,13 +110,12 @@ void warn_of_setup(const Setup &s, Diagnostics &diagnostics) {
     diagnostics.warn(fmt::format("telescope.mirror = \"{}\" says nothing at a Cassegrain focus, "
                                  "before which no flat mirror stands",
                                  telescope.mirror));
-  if (const double crossing_s = wind_crossing_s(s.observation.instrument.telescope.aperture_m);
-      s.observation.scintillation_c_y && s.observation.exposure_s < crossing_s)
-    diagnostics.warn(fmt::format(
-        "observation.exposure_s = {:g}: the air's pattern takes {:.2g} s to cross the aperture. "
-        "Scintillation is taken as that of {:.2g} s, and drawn for each exposure by itself, though "
-        "exposures that are closer than that flicker together",
-        s.observation.exposure_s, crossing_s, crossing_s));
+  if (std::string brief =
+          brief_words(fmt::format("observation.exposure_s = {:g}", s.observation.exposure_s),
+                      s.observation.exposure_s, telescope.aperture_m);
+      s.observation.scintillation_c_y && !brief.empty())
+    diagnostics.warn(brief + ", and drawn for each exposure by itself, though exposures that are "
+                             "closer than that flicker together");
   const double site_height_m = s.scenario.observer->altitude_m;
   if (constexpr double highest = 9000; site_height_m > highest)
     diagnostics.warn(fmt::format("observer.alt_m = {:g}: higher than any mountain. It is in metres",

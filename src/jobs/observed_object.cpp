@@ -139,6 +139,7 @@ Result<void> ObservedObject::set_up(Diagnostics &diagnostics) {
       plan_->options.threads});
   warn_of_mosaic(*ready_->setup, diagnostics);
   UMOV_TRY(check_air(exposures, *ready_->setup, diagnostics));
+  warn_of_trails(*ready_->setup, exposures, diagnostics);
   warn_of_setup(*ready_->setup, diagnostics);
   return {};
 }

@@ -1,5 +1,6 @@
 """umov observe with level = "image": frames as FITS files, and the counts that are taken from them."""
 import math
+import re
 import statistics
 
 import numpy
@@ -8,6 +9,7 @@ from astropy.io import fits
 from astropy.table import Table
 from astropy.wcs import WCS
 
+from conftest import ROOT
 from sphere_over_maui import make_sphere, write_scene
 from test_observe import pulls
 
@@ -85,6 +87,29 @@ def test_apertures_know_trails(scene, umov, tmp_path, tracking):
     # Square pixels widen images, so that a thousandth more is beyond two widths.
     assert abs(light[0] / light[1] - 1) < 2e-3, light
     assert max(abs(image["w0"] / aperture["w0"] - 1)) < 2e-3
+
+
+def test_a_telescope_that_stands_follows_what_stands(umov, tmp_path):
+    """GOES 15, .08 deg from the equator, in 10 s: an image without a trail for a telescope that stands, and 15.041 arcsec/s cos(dec)
+    against the stars. Turned the wrong way a standing one would see twice that."""
+    make_sphere(umov, 1, 24)
+    pixels = {}
+    for tracking in ("satellite", "fixed", "sidereal"):
+        path = write_scene(tmp_path, BAND + "exposure_s = 10", atmosphere="seeing = { arcsec = 2 }", alt_m=2096,
+                           telescope=f'tracking = "{tracking}"', start="2018-02-10T06:00:00Z", stop="2018-02-10T06:01:00Z")
+        text = re.sub(r"orbit = .*", f'orbit = {{ file = "{ROOT}/data/tle/goes15.tle" }}', path.read_text())
+        path.write_text(re.sub(r"lat_deg = .*\nlon_deg = .*", "lat_deg = 31.9584\nlon_deg = -111.5967", text).replace("Maui", "Kitt"))
+        done = umov("observe", path, "-o", tracking)
+        assert done.code == 0, done.err
+        pixels[tracking] = Table.read(tmp_path / tracking / "counts.ecsv")
+    n = {name: statistics.mean(table["n_pixel"]) for name, table in pixels.items()}
+    radius = math.sqrt(4 * n["satellite"] / math.pi)  # a quarter of pi r^2 + 2 r L is each orientation's
+    trail = 4 * (n["sidereal"] - n["satellite"]) / (2 * radius)
+    rate = 15.041 * math.cos(math.radians(statistics.mean(pixels["sidereal"]["dec"])))
+    # Focal length and pixel of the instrument. By itself it moves by .025 arcsec/s at most, .08 deg and an eccentricity of 1.6e-4 from a
+    # smaller distance than the Earth's middle: 1 px, .002 of the trail. The Earth is turned about the pole of 2000, .1 deg off: 1 px more.
+    assert abs(trail / (rate * 10 / math.degrees(3.45e-6 / 2.794) / 3600) - 1) < 0.003, (n, trail)
+    assert abs(4 * (n["fixed"] - n["satellite"]) / (2 * radius)) < 2.1, n
 
 
 @pytest.mark.parametrize("tracking", ["sidereal", "satellite"])

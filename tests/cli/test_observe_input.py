@@ -6,6 +6,7 @@ import subprocess
 import time
 
 import pytest
+from astropy.io import fits
 from astropy.table import Table
 
 from conftest import UMOV, read_csv
@@ -58,12 +59,14 @@ REFUSED = [
     ("exposure_s = 1\n[detector]\nread_e = 1e6", "cameras have 1 to 100"),
     ("exposure_s = 1\n[detector]\nsize_px = [10.5, 3]", "size_px = [10.5, 3]; [columns, rows], two whole numbers"),
     ('exposure_s = 1\n[telescope]\nmount = "equatorial"\nderotator = true', "on which no field turns"),
-    ('exposure_s = 0.01\n[telescope]\ntracking = "sidereal"\n[detector]\nshutter = "rolling"\nline_time_s = 1e-4', "of what a rolling shutter"),
+    ('exposure_s = 0.01\n[telescope]\ntracking = "sidereal"\n[detector]\nshutter = "rolling"\nline_time_s = 2e-4', "of what a rolling shutter"),
     ("exposure_s = 1\n[atmosphere.cloud]\nsd_mag = 50", "nothing is seen behind a cloud"),
     ("exposure_s = 1\n[atmosphere.cloud]\ntime_s = 60", "without sd_mag"),
     ("exposure_s = 1\n[atmosphere.sky]\nmag = 90", "-5 to 40 mag a square second of arc"),
     ("exposure_s = 1\n[polarimeter]\ntype = \"hwp_dual_beam\"\nretardance_deg = 1", "retardance_deg = 1 there hardly changes Q and U"),
     ("exposure_s = 1\n[polarimeter]\ntype = \"rotating_retarder\"\nretardance_deg = 1", "some 90 to 150 (131.8 tells all alike) was expected"),
+    ('exposure_s = 1\nlevel = "image"\n[detector]\nmodel = "counter"\ndead_time_s = 1e-7', "detector.dead_time_s = 1e-07"),
+    ('exposure_s = 1\nbands = ["nm:255"]\nwidth_nm = 40', "255 nm, 40 nm wide"),
     ('exposure_s = 1\nbands = ["nm:5500"]', "what air takes is known from 250 to 4000 nm"),
 ]
 
@@ -101,6 +104,8 @@ def test_numbers_of_an_emccd_are_those_behind_its_register(scene, umov, tmp_path
         assert done.code == 0, done.err
         counts = Table.read(tmp_path / level / "counts.ecsv")
         assert max(abs(counts["counts_adu"] * 10 / 200 / counts["counts"] - 1)) < 1e-9, level
+    header = fits.getheader(next((tmp_path / "image/frames").glob("*.fits")))
+    assert header["EMGAIN"] == 200 and header["GAIN"] == 10 and "behind the register" in header.comments["GAIN"]
 
 
 @pytest.mark.parametrize("sky, told", [
@@ -160,6 +165,8 @@ def test_day_is_refused(scene, umov):
 WARNED = [
     # Some .6 deg/s over pixels of .25 arcsec are 8,000 rows a second: 8 % of each exposure.
     ('exposure_s = 0.01\n[telescope]\ntracking = "sidereal"\n[detector]\nshutter = "rolling"\nline_time_s = 1e-5', {}, "under a rolling shutter"),
+    # .526 deg/s (test_observe_pass.py) for half a second over pixels of .255 arcsec: 3,700 of them.
+    ('exposure_s = 0.5\n[telescope]\ntracking = "fixed"', {}, "detector.size_px = [2448, 2048] (3192 px across)"),
     ("exposure_s = 1\n[detector]\nwell_e = 1e5", {}, "numbers fill first"),
     ("exposure_s = 0.1", {"air": "seeing = { arcsec = 0.5 }"}, "under 3 px"),
     ("exposure_s = 0.1\naperture_fwhm = 1", {}, "cuts the four orientations unevenly"),

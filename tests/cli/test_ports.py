@@ -92,6 +92,17 @@ def test_a_rolling_shutter_exposes_what_runs_along_longer(umov, tmp_path):
     rate = Table.read(plain / "truth.ecsv")["rate"][0]  # 0.526 deg/s: test_observe_pass.py
     expected = rate * 3600 / (math.degrees(3.45e-6 / 2.794) * 3600) * 9.24e-6
     assert 0.05 < expected and abs(math.hypot(lines[0], lines[90]) / expected - 1) < 0.02
+    # Of rows read ten times as slowly, more than half of which is refused: by the motion along the rows' order alone.
+    answers = set()
+    for axis in range(0, 180, 20):
+        along = 10 * abs(lines[0] * math.cos(math.radians(axis)) + lines[90] * math.sin(math.radians(axis)))
+        path = write_scene(tmp_path, BAND + "exposure_s = 0.01", atmosphere=QUIET,
+                           telescope='tracking = "fixed"\n' + ROLLING.format(axis).replace("9.24e-6", "9.24e-5"), **span)
+        if abs(along - 0.5) > 0.02:
+            done = umov("observe", path, "-o", f"slow{axis}")
+            answers.add(done.code)
+            assert done.code == (3 if along > 0.5 else 0) and ("rows a second" in done.err) == (along > 0.5), (axis, along, done.err)
+    assert answers == {0, 3}
     framed = observe(umov, tmp_path, "framed", "exposure_s = 0.01\nlevel = \"image\"\nframe_px = [200, 200]",
                      'tracking = "fixed"\ntracking_error_arcsec = 0\n' + ROLLING.format(90), **span)
 
