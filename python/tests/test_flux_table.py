@@ -127,3 +127,26 @@ def test_a_correction_in_minutes_is_in_minutes():
 def test_words_of_a_flux_table(options, words):
     with pytest.raises(umov.UsageError, match=words):
         umov.flux_table(series(), **{"band": "nm:550", **options})
+
+
+def _columns(**more):
+    return {"time": UTC, "flux": [1.0, 2, 3, 4], "flux_err": [.1] * 4, **more}
+
+
+def test_a_dictionary_keeps_units_and_masks():
+    with_units = umov.flux_table(_columns(flux=[1000.0, 2000, 3000, 4000] * u.mJy, flux_err=[.1, .2, .3, .4] * u.Jy), "nm:550")
+    assert np.allclose(with_units["flux_err"] / with_units["flux"], 0.1, rtol=1e-12)  # 0.1 Jy of 1000 mJy; doubles
+    listed = umov.flux_table(_columns(flux=[1000 * u.mJy, 2 * u.Jy, 3 * u.Jy, 4 * u.Jy], flux_err=[.1] * 4 * u.Jy), "nm:550")
+    assert np.allclose(listed["flux_err"] / listed["flux"], [.1, .05, .1 / 3, .025], rtol=1e-12)
+    with pytest.raises(umov.UsageError, match="linear in light"):
+        umov.flux_table(_columns(flux=[1.0, 2, 3, 4] * u.mag, flux_err=[.1] * 4 * u.mag), "nm:550")
+    for hidden in (np.ma.array([1.0, 2, 3, 4], mask=HIDDEN), Masked([1.0, 2, 3, 4], mask=HIDDEN)):
+        with pytest.warns(umov.UmovWarning, match="1 of 4 rows"):
+            found = umov.flux_table(_columns(flux=hidden), "nm:550")
+        assert list(found["flux"]) == [1, 3, 4]
+
+
+@pytest.mark.parametrize("flux", ([1.0, 2.0], 5.0, [[1.0], [2.0, 3.0], [], []], None))
+def test_columns_of_no_length_in_common_are_told(flux):
+    with pytest.raises(umov.UsageError, match="light"):
+        umov.flux_table(_columns(flux=flux), "nm:550")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._jobs import Watch
-from ._numbers import in_units, path_text, text, truth
+from ._numbers import in_units, joined, path_text, text, truth
 from .errors import InputError, UsageError
 from .times import utc_list
 
@@ -93,17 +93,26 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
 
 def _of_columns(light: Any) -> AstropyTable:
     """A DataFrame or a dictionary of columns; moments and texts of its column of time as Times."""
-    from astropy.table import Table
-    from astropy.time import Time
-    columns = {str(name): np.asarray(light[name]) for name in (light if isinstance(light, Mapping) else light.columns)}
+    from astropy.table import QTable
+    columns = {str(name): joined(light[name], str(name)) if isinstance(light, Mapping) else np.asarray(light[name])
+               for name in (light if isinstance(light, Mapping) else light.columns)}
     index: Any = getattr(light, "index", None)
     if hasattr(index, "tz") and "time" not in {name.lower() for name in columns}:
         columns = {"time": np.asarray(index.astype(object)), **columns}
-    for name, column in columns.items():
-        is_time = column.dtype.kind in "UM" or (column.dtype.kind == "O" and not all(isinstance(one, (int, float)) for one in column))
-        if name.lower() == "time" and is_time:
-            columns[name] = Time([one.removesuffix("Z") for one in utc_list(list(column))[0]], scale="utc")
-    return Table(columns)
+    try:
+        return QTable({name: _moments(column) if name.lower() == "time" else column for name, column in columns.items()})
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"light is a table of columns that are none ({error}); arrays of one length were expected") from error
+
+
+def _moments(column: Any) -> Any:
+    """Moments and texts as Times; all else as it is."""
+    from astropy.time import Time
+    if hasattr(column, "scale") or np.ma.isMaskedArray(column):
+        return column
+    given = np.asarray(column)
+    is_time = given.dtype.kind in "UM" or (given.dtype.kind == "O" and not all(isinstance(one, (int, float)) for one in given.flat))
+    return Time([one.removesuffix("Z") for one in utc_list(list(given))[0]], scale="utc") if is_time else column
 
 
 def _read(path: str) -> AstropyTable:
