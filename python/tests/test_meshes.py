@@ -91,3 +91,37 @@ def test_glb_of_trimesh_is_turned_only_where_one_says_so(tmp_path):
     height = {up: np.ptp(umov.mesh(umov.Satellite(path, up=up, materials="gold")).vertices, axis=0).tolist() for up in (None, "+Z")}
     assert height == {None: [1, 5, 1], "+Z": [1, 1, 5]}
     assert "+Y up" in umov.Satellite.__doc__
+
+
+@pytest.mark.parametrize("name", ("wing\\", "a\\b", "a\x7fb", "a\x85b", "a\u2028b", "a\u200bb"))
+def test_a_group_that_an_obj_cannot_name_is_refused(name):
+    """A backslash at the end of a line of an OBJ takes the next line, a triangle, for its own."""
+    with pytest.raises(umov.UsageError, match="a group is named"):
+        umov.Satellite((SQUARE, HALVES, [name, "other"]), materials="gold")
+    with pytest.raises(umov.UsageError, match="a group is named"):
+        umov.Satellite({name: (SQUARE, HALVES)}, materials="gold")
+
+
+@pytest.mark.parametrize("groups", (["a", None], ["a", np.nan], np.ma.array(["a", "b"], mask=[False, True])))
+def test_a_group_without_a_name_is_refused(groups):
+    with pytest.raises(umov.UsageError, match="gaps"):
+        umov.Satellite((SQUARE, HALVES, groups), materials="gold")
+    with pytest.raises(umov.UsageError, match="no name"):
+        umov.Satellite({None: (SQUARE, HALVES)}, materials="gold")
+
+
+def _box(units):
+    box = trimesh.creation.box((1, 1, 1))
+    if units is not None:  # which trimesh would take for a text
+        box.units = units
+    return box
+
+
+def test_units_of_parts_are_read():
+    for parts in ({"bus": _box("mm"), "wing": _box("mm")}, trimesh.Scene([_box("mm"), _box("mm")])):
+        vertices = umov.mesh(umov.Satellite(parts, materials="gold")).vertices
+        assert np.ptp(vertices, axis=0) == pytest.approx(1e-3, rel=1e-12)  # a millimetre; doubles
+    for other in ("m", None):
+        for parts in ({"bus": _box("mm"), "wing": _box(other)}, trimesh.Scene([_box("mm"), _box(other)])):
+            with pytest.raises(umov.UsageError, match="parts of the mesh are in .*mm.*one unit"):
+                umov.Satellite(parts, materials="gold")

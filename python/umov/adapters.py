@@ -16,6 +16,7 @@ import numpy as np
 from . import _toml, satrecs
 from ._numbers import in_unit, joined, number_array, path_text, utf8
 from .errors import DeviceError, UsageError
+from .times import is_gap
 
 Texts = dict[str, str]
 
@@ -124,9 +125,21 @@ _MESH_UNITS = {name: unit for unit, names in {
 
 
 def mesh_unit(mesh: Any) -> str | None:
-    """What a trimesh mesh says of its unit; None where it says nothing, and for a file, a table or bare arrays."""
-    is_of_trimesh = _is_mesh(mesh) or (hasattr(mesh, "geometry") and hasattr(mesh, "graph"))
-    told = getattr(mesh, "units", None) if is_of_trimesh else None
+    """What a trimesh mesh, or each part of a scene or of meshes by name, says of its unit; None where none says anything, and for a
+    file, a table or bare arrays. `UsageError` where parts differ: one file has one unit."""
+    if isinstance(mesh, Mapping) and _is_parts(mesh):
+        parts = list(mesh.values())
+    else:
+        parts = list(mesh.geometry.values()) if _is_scene(mesh) else [mesh]
+    units = {_unit_told(one) for one in parts if _is_mesh(one)}
+    if len(units) > 1:
+        raise UsageError(f"parts of the mesh are in {', '.join(sorted(one or 'no unit' for one in units))}; one unit for all was expected. "
+                         "Convert each: part.convert_units(\"meters\"), or say unit=.")
+    return units.pop() if units else None
+
+
+def _unit_told(mesh: Any) -> str | None:
+    told = getattr(mesh, "units", None)
     if told is None:
         return None
     unit = _MESH_UNITS.get(str(told).strip().lower())
@@ -157,6 +170,11 @@ def _is_mesh(value: Any) -> bool:
     return hasattr(value, "vertices") and hasattr(value, "faces")
 
 
+def _is_scene(value: Any) -> bool:
+    """A scene of trimesh."""
+    return hasattr(value, "geometry") and hasattr(value, "graph")
+
+
 def _is_parts(mesh: Mapping[Any, Any]) -> bool:
     """Meshes by the names of their groups, no table of a scenario."""
     return bool(mesh) and all(_is_mesh(one) or (isinstance(one, (list, tuple)) and len(one) == 2) for one in mesh.values())
@@ -165,8 +183,10 @@ def _is_parts(mesh: Mapping[Any, Any]) -> bool:
 def _parts(mesh: Any) -> list[tuple[str, Any]]:
     """Names and meshes of what is given; "": its own name for its groups."""
     if isinstance(mesh, Mapping):
+        if any(is_gap(name) for name in mesh):
+            raise UsageError("a mesh has no name (None or nan); meshes by the names of their groups were expected")
         return [(str(name), part) for name, part in mesh.items()]
-    if hasattr(mesh, "geometry") and hasattr(mesh, "graph"):  # a scene of trimesh: each geometry where its node puts it
+    if _is_scene(mesh):  # each geometry where its node puts it
         out = []
         for node in mesh.graph.nodes_geometry:
             transform, name = mesh.graph[node]
@@ -228,7 +248,10 @@ def _triangles(part: Any, unit: str, group: str) -> tuple[Any, Any, list[str]]:
                          "counted from 0")
     if not more:
         return points, corners, _checked(_groups_of(part, group, len(corners)))
-    names = [str(one) for one in np.ravel(np.asarray(more[0]))]
+    given = list(np.ravel(np.asarray(more[0], dtype=object)))
+    if np.ma.is_masked(more[0]) or any(is_gap(one) for one in given):
+        raise UsageError("groups have gaps (None, nan or masked); a name for each face was expected")
+    names = [str(one) for one in given]
     if len(names) != len(corners):
         raise UsageError(f"groups are {len(names)}; a name for each of {len(corners)} faces was expected")
     return points, corners, _checked(names)
@@ -237,6 +260,7 @@ def _triangles(part: Any, unit: str, group: str) -> tuple[Any, Any, list[str]]:
 def _checked(names: list[str]) -> list[str]:
     """As an OBJ file can hold them."""
     for name in dict.fromkeys(names):
-        if not name.strip() or name != name.strip() or any(ord(one) < 32 for one in name):
-            raise UsageError(f"a group is named {name!r}; a name without spaces at its ends was expected")
+        if not name.strip() or name != name.strip() or not name.isprintable() or "\\" in name:  # which goes on in the next line of an OBJ
+            raise UsageError(f"a group is named {name!r}; a name that can be printed was expected, without spaces at its ends and "
+                             "without a backslash")
     return names

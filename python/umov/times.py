@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, Union
 import numpy as np
 
 from . import _umov
-from ._numbers import number
+from ._numbers import no_foreign, number
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -109,14 +109,18 @@ def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
     return [utc(one) for one in listed], False
 
 
-def _is_gap(one: Any) -> bool:
+def is_gap(one: Any) -> bool:
     """None, or NaT and NaN of numpy and pandas."""
     return one is None or type(one).__name__ in ("NaTType", "NAType") or (isinstance(one, (float, np.floating, np.datetime64)) and one != one)
 
 
 def plain_column(column: Any, name: str, what: str) -> Any:
     """A column of objects as it can be written: moments as texts in UTC, gaps (None, NaT, NA) as empty cells; all else as it is."""
-    if getattr(getattr(column, "dtype", None), "kind", "") == "M":
+    no_foreign(column, f"{what}'s column {name}")
+    dtype = getattr(column, "dtype", None)
+    if getattr(dtype, "tz", None) is not None:
+        return _of_objects(list(column), name, what)  # of pandas, with a zone
+    if getattr(dtype, "kind", "") == "M":
         raise UsageError(f"{what}'s column {name} has times without a zone, so they could be local times or UTC; aware times were expected. In UTC "
                          f'that is df["{name}"].dt.tz_localize("UTC") in pandas, and astropy.time.Time({name}, scale="utc")')
     if isinstance(column, np.ndarray) or (isinstance(column, (list, tuple)) and any(one is None or is_moment(one) or isinstance(
@@ -126,18 +130,21 @@ def plain_column(column: Any, name: str, what: str) -> Any:
 
 
 def _of_objects(cells: list[Any], name: str, what: str) -> Any:
-    known = [one for one in cells if not _is_gap(one)]
+    known = [one for one in cells if not is_gap(one)]
     if all(isinstance(one, str) for one in known):
-        return ["" if _is_gap(one) else str(one) for one in cells]
+        return ["" if is_gap(one) else str(one) for one in cells]
+    truths = [row for row, one in enumerate(cells) if isinstance(one, (bool, np.bool_))]
+    if truths:
+        raise UsageError(f"{what}'s column {name}, row {truths[0]} is {cells[truths[0]]!r}; numbers, texts or times were expected, one kind in a column")
     if all(isinstance(one, (int, float, np.number)) for one in known):
-        return np.array([np.nan if _is_gap(one) else float(one) for one in cells])
+        return np.array([np.nan if is_gap(one) else float(one) for one in cells])
     out = []
     for row, one in enumerate(cells):
         place = f"{what}'s column {name}, row {row}"
-        if not (_is_gap(one) or isinstance(one, (str, datetime.date, np.datetime64)) or is_moment(one)):
+        if not (is_gap(one) or isinstance(one, (str, datetime.date, np.datetime64)) or is_moment(one)):
             raise UsageError(f"{place} is {str(one)[:60]!r}, of type {type(one).__name__}; numbers, texts or times were expected, one kind in a column")
         try:
-            out.append("" if _is_gap(one) else utc(one))
+            out.append("" if is_gap(one) else utc(one))
         except UsageError as error:
             raise UsageError(f"{place}: {error}") from error
     return out
