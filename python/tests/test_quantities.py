@@ -10,8 +10,9 @@ from astropy import units as u
 from astropy.coordinates import ICRS, SkyCoord
 from astropy.table import Column, QTable, Table
 from astropy.time import Time
+from umov import _numbers
 
-from conftest import DATA, LINES
+from conftest import DATA, EXAMPLES, LINES
 
 START, STOP = "2018-01-21T05:10:00Z", "2018-01-21T05:11:00Z"
 TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
@@ -184,3 +185,48 @@ def test_times_of_numpy():
         umov.ephemeris(DATA / "tle/hst.tle", "maui", START, STOP, step=np.timedelta64("NaT"))
     with pytest.raises(umov.UsageError, match=r"no time zone.*Time.'2018-01-21T05:00'"):
         umov.utc(np.datetime64("2018-01-21T05:00"))
+
+
+def test_only_magnitudes_are_magnitudes():
+    """astropy scales mag/deg2 and decibels into magnitudes: 21 mag/deg2 would be 1.6e-6 mag/arcsec2, 8 dB -2 mag."""
+    for good, expected in ((21 * u.mag / u.arcsec**2, 21), (21 * u.mag, 21), (21000 * u.mmag, 21), (u.Magnitude(21, u.mag(u.AB / u.arcsec**2)), 21)):
+        assert _numbers.number(good, "sky_mag") == pytest.approx(expected, rel=1e-15)
+    assert _numbers.number(8000 * u.mmag, "mag") == pytest.approx(8, rel=1e-15)
+    for name, bad in (("sky_mag", 21 * u.mag / u.deg**2), ("mag", 8 * u.dB), ("mag", 8 * u.dex), ("mag", 8 * u.mag / u.arcsec**2), ("sky_mag", 8 * u.dB)):
+        with pytest.raises(umov.UsageError, match="a magnitude was expected"):
+            _numbers.number(bad, name)
+
+
+class Foreign:
+    """As pint's: a value, units and their dimensions, and an array of the value alone."""
+
+    units, dimensionality = "millimeter", "[length]"
+
+    def __init__(self, magnitude):
+        self.magnitude = magnitude
+
+    def __array__(self, dtype=None, copy=None):
+        return np.asarray(self.magnitude, dtype)
+
+    def __float__(self):
+        return float(self.magnitude)
+
+
+class ForeignArray(np.ndarray):
+    """As unyt's."""
+
+    units = "mm"
+
+    def to_value(self, units=None):
+        return np.asarray(self)
+
+
+@pytest.mark.parametrize("foreign", (Foreign(3.0), [Foreign(3.0), Foreign(4.0)], np.ones(()).view(ForeignArray), np.ones(3).view(ForeignArray)))
+def test_quantities_of_others_do_not_lose_their_unit_in_silence(foreign):
+    with pytest.raises(umov.UsageError, match="whose unit is not read"):
+        _numbers.number_array(foreign, "phase_deg")
+    with pytest.raises(umov.UsageError, match="whose unit is not read"):
+        umov.Scenario(EXAMPLES / "agena_maui.toml", {"time.step_s": foreign})
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]]).view(ForeignArray)
+    with pytest.raises(umov.UsageError, match="whose unit is not read"):
+        umov.Satellite((square, np.array([[0, 1, 2]])), materials="gold")

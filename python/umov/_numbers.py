@@ -28,7 +28,21 @@ def _in_unit_of(value: Any, name: str, unit: str | None, system: str) -> Any:
         raise UsageError(f"{name} is {_short(value)}, with a unit; a plain number was expected")
     if hasattr(value, "physical"):  # magnitudes and the like of a known zero
         return _of_system(value, name, unit, system)
-    return in_unit(value, name, *((unit, "mag") if unit == "mag / arcsec2" else (unit,)))
+    if unit in _MAGNITUDES:
+        return _of_magnitudes(value, name, unit)
+    return in_unit(value, name, unit)
+
+
+#: Units of plain magnitudes for each unit wanted. astropy takes a dex (-2.5 mag), a decibel, and the mag/deg2 of a sky for the
+#: same kind: their numbers would be scaled, and are none.
+_MAGNITUDES = {"mag": ("mag", "mmag"), "mag / arcsec2": ("mag / arcsec2", "mmag / arcsec2", "mag", "mmag")}
+
+
+def _of_magnitudes(value: Any, name: str, unit: str) -> Any:
+    for one in _MAGNITUDES[unit]:
+        if value.unit == one:
+            return value.value * (1e-3 if one.startswith("mmag") else 1.0)
+    raise UsageError(f"{name} is {_short(value)}; a magnitude was expected, in {' or '.join(_MAGNITUDES[unit])}, or a plain number in {unit}")
 
 
 def in_unit(value: Any, name: str, *units: str) -> Any:
@@ -59,6 +73,7 @@ def _of_system(value: Any, name: str, unit: str, system: str) -> Any:
 
 def joined(value: Any, name: str) -> Any:
     """A list of Quantities as one; all else as it is."""
+    no_foreign(value, name)
     if not isinstance(value, (list, tuple)) or not value or not all(hasattr(one, "to_value") for one in value):
         return value
     from astropy.units import Quantity
@@ -66,6 +81,16 @@ def joined(value: Any, name: str) -> Any:
         return Quantity(value)
     except Exception as error:
         raise UsageError(f"{name} is {_short(value)}; quantities of one kind and shape were expected ({error})") from error
+
+
+def no_foreign(value: Any, name: str) -> None:
+    """Quantities of pint, unyt and others, whose unit an array of numbers would lose: `UsageError`."""
+    for one in value if isinstance(value, (list, tuple)) else (value,):
+        kind = type(one)
+        if any(hasattr(kind, has) for has in ("units", "dimensionality")) and not hasattr(one, "unit"):
+            raise UsageError(f"{name} is {_short(value)}, a {kind.__name__} of {kind.__module__.partition('.')[0]}, whose unit is not read; a Quantity "
+                             "of astropy or a plain number was expected: value.to_astropy() of unyt, value.magnitude * "
+                             "astropy.units.Unit(str(value.units)) of pint")
 
 
 def lengths(value: Any, name: str) -> Any:
@@ -91,6 +116,7 @@ _NO_NUMBERS = (str, bytes, bool, np.bool_)
 def real_array(value: Any, name: str, expected: str = "numbers") -> NDArray[np.float64]:
     """Numbers as float64. Texts, dates and truth values are none, although numpy would take them; what is masked has no
     value."""
+    no_foreign(value, name)
     if _is_masked(value) or (isinstance(value, (list, tuple)) and any(_is_masked(one) for one in value)):
         raise UsageError(f"{name} has masked values; {expected} were expected. Leave them out first.")
     try:
@@ -207,7 +233,7 @@ def _wanted(name: str, unit: Any) -> tuple[Any, str]:
     if name in ("mag", "mag_err"):
         if isinstance(unit, units.MagUnit):
             return None, ""
-        return (units.mag, "") if unit.is_equivalent(units.mag) else (None, "magnitudes")
+        return (units.mag, "") if unit in (units.mag, units.mmag) else (None, "magnitudes")
     if name in _COUNTS:
         return None, "" if unit in (units.ct, units.electron, units.adu, units.photon, units.DN) else "electrons or other counts"
     if name in _LIGHT:

@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._numbers import plain_key, text, utf8
+from ._numbers import no_foreign, plain_key, text, utf8
 from .errors import InputError, UsageError
 from .times import is_moment, utc
 
@@ -70,6 +70,7 @@ def _value_text(value: Any, name: str) -> str:
     if isinstance(value, Mapping):
         inside = (f"{_key(str(k))} = {_value_text(v, str(k))}" for k, v in value.items() if v is not None)
         return "{ " + ", ".join(inside) + " }"
+    no_foreign(value, name)
     if hasattr(value, "to_value") and hasattr(value, "unit") and not hasattr(value, "scale"):  # into the unit that the key has
         return value_text(plain_key(value, name), name)
     if hasattr(value, "to_value") or hasattr(value, "scale"):  # a length of time, of which a scenario has its own forms
