@@ -118,3 +118,18 @@ def test_candidates_may_be_materials(curve):
     for wrong in ("gold", mine, [], [5]):
         with pytest.raises(umov.UsageError, match="candidates"):
             umov.invert_material(curve, EXAMPLES / "hst_maui.toml", group="array_front", candidates=wrong)
+
+
+def test_materials_of_one_name_are_refused_and_any_name_is_taken(curve):
+    def paint(n, name):
+        return umov.Material.from_dict(name, {"index": {"n": n, "k": 0.0}, "distribution": {"model": "ggx", "alpha": 0.3}})
+
+    def asked(*candidates):
+        return umov.invert_material(curve, EXAMPLES / "hst_maui.toml", group="array_front", candidates=candidates, cache=False)
+
+    with pytest.raises(umov.UsageError, match="two different materials of the name mine"):
+        asked(paint(1.5, "mine"), paint(2.5, "mine"))
+    with pytest.raises(umov.UsageError, match="the library has another material of the name gold"):
+        asked(paint(1.5, "gold"), "cell_silicon")
+    dotted, plain = (asked(paint(1.5, name), "cell_silicon").tables["materials"] for name in ("a.b", "ab"))
+    assert dotted["material"].tolist() == [one.replace("ab", "a.b") for one in plain["material"].tolist()]

@@ -16,7 +16,7 @@ from ._numbers import between, path_text, whole_between
 from ._words import in_python, told_in_python
 from .errors import UsageError
 from .light_curves import LightCurve
-from .materials import Material
+from .materials import Material, materials
 from .observing import _text_of
 from .periods import AnyLight
 from .scenarios import AnyScenario, Scenario
@@ -501,12 +501,16 @@ def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike
 
 def _with_materials(scenario: Scenario, given: Sequence[Any], what: str) -> tuple[Scenario, list[str]]:
     """The scenario with the Materials that are given, under their names, and the names of all."""
-    own, names = {}, []
+    own: dict[str, Material] = {}
+    names = []
     there = scenario.to_dict().get("material", {})
     for one in given:
         if isinstance(one, Material):
-            if not one.is_named:
-                own[f"material.{one.name}"] = one.to_dict()
+            if own.setdefault(one.name, one) != one:
+                raise UsageError(f"{what} has two different materials of the name {one.name}; a name of its own for each was expected")
+            if not one.is_named and one.name not in there and one.name in materials()["material"] and Material(one.name) != one:
+                raise UsageError(f"the library has another material of the name {one.name}, which the scenario's parts of that name would lose; "
+                                 "a name of its own was expected")
             names.append(one.name)
         elif isinstance(one, str):
             names.append(one)
@@ -514,7 +518,8 @@ def _with_materials(scenario: Scenario, given: Sequence[Any], what: str) -> tupl
             raise UsageError(f"{what} has a {type(one).__name__}; names of materials, or Materials, were expected")
         if isinstance(one, Material) and one.name in there and Material.from_dict(one.name, there[one.name]) != one:
             raise UsageError(f"the scenario has another material of the name {one.name}; a name of its own was expected")
-    return (Scenario(scenario, own) if own else scenario), names
+    new = {name: one.to_dict() for name, one in own.items() if not one.is_named}
+    return (Scenario(scenario, {"material": {**there, **new}}) if new else scenario), names
 
 
 def _names(given: Any, name: str, what: str) -> list[str]:
