@@ -103,3 +103,20 @@ def test_texts_of_lists_in_lists_without_number():
 def test_a_folder_of_any_name_is_named_in_toml(name, tmp_path, plate):
     assert umov.mesh(umov.Satellite.from_toml(plate.to_toml(tmp_path / name))).vertices.shape == (4, 3)
     assert umov.mesh(umov.Scenario.from_toml(umov.Scenario(plate).to_toml(tmp_path / name))).vertices.shape == (4, 3)
+
+
+def test_a_series_with_a_zone_in_a_dictionary_has_one():
+    series = pd.Series(pd.to_datetime(TEXTS))
+    assert _period({"time_utc": series, "mag": MAG}) == _period({"time_utc": TEXTS, "mag": MAG})
+    assert _period({"time_utc": pd.DatetimeIndex(TEXTS), "mag": MAG}) == _period({"time_utc": TEXTS, "mag": MAG})
+
+
+def test_truth_values_among_objects_are_no_numbers():
+    for truths in ([True] * 200, [*MAG[1:], np.True_]):
+        with pytest.raises(umov.UsageError, match=r"light's column mag, row \d+ is .*True.*; numbers, texts or times"):
+            umov.period({"time_utc": TEXTS, "mag": np.array(truths, object)})
+
+
+def test_columns_named_by_numbers_are_told():
+    with pytest.raises(umov.Error, match="light"):
+        umov.period({0: TEXTS, 1: MAG})

@@ -3,6 +3,7 @@ import matplotlib
 import numpy as np
 import pandas as pd
 import pytest
+from astropy import units as u
 
 import umov
 from conftest import EXAMPLES
@@ -71,3 +72,16 @@ def test_one_band_and_the_site_stand_over_the_figures():
     several = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
     assert several.plot().get_suptitle() == "HST from Maui, polarized RGB"  # which names its site
     assert plot.magnitude(several).get_title(loc="right") == ""
+
+
+def test_bands_of_poses_have_forms(hst):
+    names = ["nm:450", "nm:550", "nm:650"]
+    light = np.ones((5, 3, 4))
+    for bands in (umov.Bands(names), np.array([450, 550, 650]) * u.nm, tuple(names)):
+        assert plot.q_rgb(light, bands=bands).get_xlabel() == "450 nm [%]"
+    for wrong, told in ((5, "bands is 5; names"), ([None, *names[1:]], "bands has None"), ({}, "bands is {}")):
+        with pytest.raises(umov.UsageError, match=told):
+            plot.q_rgb(light, bands=wrong)
+    light[0, 0, 0] = np.nan
+    with pytest.raises(umov.UsageError, match="not finite"):
+        plot.q_rgb(light, bands=names)

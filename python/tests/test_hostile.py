@@ -42,6 +42,7 @@ A_PLACE = EarthLocation.from_geodetic(10 * u.deg, 20 * u.deg)
 WRONG = {
     "a time for vertices": (lambda e: umov.Satellite(mesh=(Time(START), [[0, 1, 2]]), materials="gold"), "vertices is .*; numbers were expected"),
     "a table for a material": (lambda e: umov.Material("mine.csv"), r"name is 'mine.csv', a table; .*from_dict\(\"mine\", {\"table\": 'mine.csv'}\)"),
+    "a table in capitals": (lambda e: umov.Material("mine.CSV"), r"name is 'mine.CSV', a table; .*from_dict\(\"mine\", {\"table\": 'mine.CSV'}\)"),
     "texts": (lambda e: e.evaluate(["1", "0", "0"], [0, 0, 1]), "sun is .*; numbers, directions"),
     "dates": (lambda e: e.evaluate(np.array(["2020", "2021", "2022"], "M8[Y]"), [0, 0, 1]), "sun is .*; numbers"),
     "complex": (lambda e: e.evaluate(np.array([1j, 0, 0]), [0, 0, 1]), "sun is .*; numbers"),

@@ -5,6 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from astropy import units as u
+from astropy.table import QTable
 from astropy.time import Time
 
 import umov
@@ -62,3 +63,30 @@ def test_an_observation_takes_exposures_between_two_times():
     document["time"] = {"epochs": list(MINE.isot + np.array("Z"))}
     with pytest.raises(umov.InputError, match=r"\[time\] has epochs; start and stop were expected"):
         umov.observe(document)
+
+
+def test_a_table_is_no_time(hst):
+    table = QTable({"time": MINE, "flux": np.ones(4)})
+    frame = pd.DataFrame({"time": pd.to_datetime(MINE.isot, utc=True), "flux": 1.0})
+    for given in (table, frame, hst.light_curve("maui", MINE, **BANDS).table):
+        with pytest.raises(umov.UsageError, match=r"a table with the columns .*Give its column of time, such as table\[.time"):
+            hst.light_curve("maui", given, **BANDS)
+    assert hst.light_curve("maui", table["time"], **BANDS).I.tobytes() == hst.light_curve("maui", MINE, **BANDS).I.tobytes()
+
+
+def test_epochs_of_a_scenario_are_times(hst):
+    scenario = hst.light_curve("maui", MINE, **BANDS).scenario
+    for epochs in (MINE, list(MINE), pd.to_datetime(MINE.datetime, utc=True)):
+        assert umov.Scenario(scenario, {"time.epochs": epochs}) == scenario
+        assert umov.Scenario(scenario, {"time": {**scenario.to_dict()["time"], "epochs": epochs}}) == scenario
+    for epochs in (MINE.datetime64, MINE.datetime64[0], list(MINE.datetime64)):  # which were whole numbers
+        with pytest.raises(umov.UsageError, match="has no time zone"):
+            umov.Scenario(scenario, {"time.epochs": epochs})
+    with pytest.raises(umov.UsageError, match="step_s is .*a plain number"):
+        umov.Scenario(scenario, {"time.step_s": np.timedelta64(2, "s")})
+
+
+@pytest.mark.parametrize("sunlit", (None, 1, "no"))
+def test_sunlit_is_true_or_false(sunlit, hst):
+    with pytest.raises(umov.UsageError, match="sunlit is .*; True or False"):
+        hst.light_curve("maui", MINE, sunlit=sunlit, **BANDS)

@@ -64,7 +64,7 @@ def test_every_number_of_a_scenario_has_the_unit_that_its_schema_tells():
     told = {"electron / s": "electron / s", "mag / arcsec2": "mag / arcsec2", "electrons for one number": "electron / adu"}
     checked = 0
     for key, text in _numbers_of(umov.schema()):
-        if key in "UBVRI" or key in ("m", "ozone_du"):  # a filter's name; an exponent; astropy has no Dobson units
+        if key in tuple("UBVRI") or key in ("m", "ozone_du"):  # a filter's name; an exponent; astropy has no Dobson units
             continue
         assert key in KEYS, f"{key}: {text}"
         bracket = re.search(r"\[([^\[\],]+)\]", text)
@@ -122,10 +122,14 @@ def test_limits_of_passes_and_peaks_take_units():
     hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle", norad=20580,
                          attitude={"mode": "nadir"}, materials="film_silvered")
     span = ("maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z")
-    assert len(umov.passes(hst, *span, mag_max=12 * u.mag, cache=False)) == len(umov.passes(hst, *span, mag_max=12 * u.ABmag, cache=False))
+    magnitudes = np.sort(np.asarray(umov.passes(hst, *span, cache=False)["mag_min"], dtype=float))
+    assert len(magnitudes) == 2 and magnitudes[1] - magnitudes[0] > 0.01
+    between = magnitudes.mean()  # one pass is brighter
+    for limit in (between, between * u.mag, 1e3 * between * u.mmag, between * u.ABmag):
+        assert len(umov.passes(hst, *span, mag_max=limit, cache=False)) == 1
     t = np.arange(0, 120, 0.5)
     seen = {"mjd_utc": 60000 + t / 86400, "mag": 7 + 0.3 * np.sin(2 * np.pi * t / 8.2)}
-    assert umov.period(seen, false_alarm=1 * u.percent)["period"].tolist() == umov.period(seen)["period"].tolist()
+    assert umov.period(seen, false_alarm=1 * u.percent) == umov.period(seen, false_alarm=0.01)
 
 
 @pytest.mark.parametrize("key, given, told", [
@@ -140,3 +144,13 @@ def test_keys_of_a_scenario_take_units(key, given, told):
 def test_a_key_without_a_unit_takes_no_quantity():
     with pytest.raises(umov.UsageError, match="atmosphere.ozone_du is .*; a plain number was expected"):
         umov.Scenario(EXAMPLES / "hst_maui.toml", set={"atmosphere.ozone_du": 3 * u.m})
+
+
+def test_the_dark_sky_of_a_filter_has_a_unit():
+    sky = 21 * u.mag / u.arcsec**2
+    assert plain_key(sky, "observer.dark_mag.V") == 21
+    changed = [umov.Scenario(EXAMPLES / "hst_maui.toml", one) for one in (
+        {"atmosphere.sky.dark_mag": {"V": sky}}, {"atmosphere.sky.dark_mag.V": sky}, {"atmosphere.sky.dark_mag": {"V": 21.0}})]
+    assert changed[0] == changed[1] == changed[2]
+    with pytest.raises(umov.UsageError, match="dark_mag.V is .*a magnitude"):
+        plain_key(21 * u.mag / u.deg**2, "observer.dark_mag.V")

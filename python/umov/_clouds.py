@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._axes import PHASE_MAP, THREE, axes_or_new as _axes, band_title, of_a_curve as _of_a_curve
 from ._numbers import number_array, real_array
 from .errors import UsageError
+from .passbands import Bands, names_of
 
 if TYPE_CHECKING:
     from .engines import Light
@@ -79,10 +80,13 @@ def _poses_of(light: Any, bands: Any, phase_deg: Any) -> tuple[NDArray[np.float6
     from .engines import Light as Poses
     stokes = real_array(light.stokes if isinstance(light, Poses) else light, "curve",
                         "a LightCurve, or Stokes parameters (..., band, 4) of poses,")
-    names = [bands] if isinstance(bands, str) else list(bands or [])
+    named = [] if bands is None else names_of(bands.set if isinstance(bands, Bands) else bands)
+    names = [named] if isinstance(named, str) else [str(one) for one in named]
     if stokes.ndim < 2 or stokes.shape[-1] != 4 or stokes.shape[-2] != len(names) or len(names) < 3:
         raise UsageError(f"curve has shape {stokes.shape} and bands are {', '.join(map(str, names)) or 'none'}; Stokes parameters (..., band, 4) "
                          "and as many names, three or more, were expected: plot.q_rgb(light, bands=engine.bands)")
+    if not np.isfinite(stokes).all():
+        raise UsageError("curve has values that are not finite; light of poses without NaN and infinity was expected. Leave them out.")
     which = [0, len(names) // 2, len(names) - 1]
     flat = stokes.reshape(-1, len(names), 4)[:, which]
     is_lit = (flat[..., 0] > 0).all(axis=1)

@@ -17,7 +17,9 @@ def plain(value: Any, name: str, system: str = "AB") -> Any:
 
 def plain_key(value: Any, key: str) -> Any:
     """The same of a key of a scenario, such as "observation.exposure_s"."""
-    return _in_unit_of(value, key, KEYS.get(key.rpartition(".")[2]), "AB")
+    table, _, last = key.rpartition(".")
+    is_sky = table.rpartition(".")[2] == "dark_mag"  # whose keys are filters
+    return _in_unit_of(value, key, ARGUMENTS["sky_mag"] if is_sky else KEYS.get(last), "AB")
 
 
 def _in_unit_of(value: Any, name: str, unit: str | None, system: str) -> Any:

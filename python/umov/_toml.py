@@ -8,9 +8,11 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ._numbers import no_foreign, plain_key, text, utf8
 from .errors import InputError, UsageError
-from .times import is_moment, utc
+from .times import is_moment, utc, utc_list
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
 
@@ -56,6 +58,10 @@ def value_text(value: Any, name: str = "value") -> str:
         raise _with_an_end() from None
 
 
+def _a_length(value: Any, name: str) -> UsageError:
+    return UsageError(f"{name} is {value!r}; a plain number or a text was expected, in the unit that the key says")
+
+
 def _value_text(value: Any, name: str) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -66,15 +72,20 @@ def _value_text(value: Any, name: str) -> str:
     if isinstance(value, os.PathLike):
         return _value_text(os.fspath(value), name)
     if is_moment(value):
-        return utc(value)
+        return "[" + ", ".join(utc_list(value)[0]) + "]" if getattr(value, "shape", ()) else utc(value)
+    if isinstance(value, (np.ndarray, np.datetime64)) and value.dtype.kind == "M":  # whose list would be one of whole numbers
+        return "[" + ", ".join(utc(one) for one in value.ravel()) + "]" if value.ndim else utc(value)
+    if isinstance(value, (np.ndarray, np.timedelta64)) and value.dtype.kind == "m":
+        raise _a_length(value, name)
     if isinstance(value, Mapping):
-        inside = (f"{_key(str(k))} = {_value_text(v, str(k))}" for k, v in value.items() if v is not None)
+        inside = (f"{_key(str(k))} = {_value_text(v, f'dark_mag.{k}' if name.rpartition('.')[2] == 'dark_mag' else str(k))}" for k, v in value.items()
+                  if v is not None)
         return "{ " + ", ".join(inside) + " }"
     no_foreign(value, name)
     if hasattr(value, "to_value") and hasattr(value, "unit") and not hasattr(value, "scale"):  # into the unit that the key has
         return value_text(plain_key(value, name), name)
     if hasattr(value, "to_value") or hasattr(value, "scale"):  # a length of time, of which a scenario has its own forms
-        raise UsageError(f"{name} is {value!r}; a plain number or a text was expected, in the unit that the key says")
+        raise _a_length(value, name)
     if hasattr(value, "tolist"):  # numpy arrays and numbers
         return _value_text(value.tolist(), name)
     if isinstance(value, int):

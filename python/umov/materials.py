@@ -49,7 +49,7 @@ class Material(Made):
     """
 
     def __init__(self, name: str) -> None:
-        if str(name).endswith((".csv", ".ecsv", ".txt", ".dat")):
+        if str(name).lower().endswith((".csv", ".ecsv", ".txt", ".dat")):
             raise UsageError(f"name is {name!r}, a table; the name of a material or a TOML file was expected. A measured BRDF becomes a material "
                              f"by umov.Material.from_dict(\"mine\", {{\"table\": {str(name)!r}}}), n and k by {{\"index\": {str(name)!r}, ...}}")
         self._material = _umov.Material.read(path_text(name, "name", "the name of a material or of its file"))

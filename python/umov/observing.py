@@ -130,7 +130,7 @@ def _text_of(table: Any, what: str) -> tuple[str, str]:
         table = {str(name): _of_pandas(table[name]) for name in table.columns} | _time_of_index(table)
     if isinstance(table, Mapping):
         from astropy.table import Table as Columns
-        columns = {name: plain_column(one, str(name), what) for name, one in table.items()}
+        columns = {str(name): plain_column(one, str(name), what) for name, one in table.items()}
         try:
             table = Columns(columns, meta=notes)
         except (TypeError, ValueError) as error:

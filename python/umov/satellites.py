@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Union
 from . import _toml, adapters
 from ._jobs import Progress
 from ._made import Made
-from ._numbers import number, path_text
+from ._numbers import number, path_text, truth
 from .errors import UsageError
 from .passbands import Bands, names_of
 from .sites import AnySite, Site
-from .times import AnyTime, seconds, utc, utc_list
+from .times import AnyTime, columns_of, seconds, utc, utc_list
 
 if TYPE_CHECKING:
     from astropy.units import Quantity, UnitBase
@@ -350,7 +350,7 @@ class Satellite(Made):
             length = seconds(step) if step is not None else number(1.0 if step_s is None else step_s, "step_s")
             span = {"start": utc(start), "stop": utc(stop), "step_s": length}
         only = {"alt_min_deg": number(alt_min_deg, "alt_min_deg"),
-                "sun_alt_max_deg": number(sun_alt_max_deg, "sun_alt_max_deg"), "sunlit": sunlit}
+                "sun_alt_max_deg": number(sun_alt_max_deg, "sun_alt_max_deg"), "sunlit": truth(sunlit, "sunlit")}
         scenario = Scenario(self.to_scenario_dict(
             bands, title=self.name, seed=seed, observer=Site(site).to_dict(),
             time={**span, "only": only},
@@ -419,6 +419,8 @@ def _are_epochs(start: Any) -> bool:
     """Several times: an array of Times or a sequence; a row of passes has names, and a text is one time."""
     if hasattr(start, "utc_iso") or hasattr(start, "sidereal_time"):  # skyfield's Time is no sequence, astropy's always
         return bool(getattr(start, "shape", ()))
+    if columns_of(start) is not None:
+        return "rise_utc" not in (columns_of(start) or ())  # whoever reads times tells of a table
     is_row = isinstance(start, (str, bytes, Mapping)) or hasattr(start, "colnames") or (hasattr(start, "index") and "rise_utc" in start.index
                                                                                         if hasattr(start, "iloc") else False)
     return not is_row and isinstance(start, Iterable) and getattr(start, "shape", (1,)) != ()
@@ -426,7 +428,7 @@ def _are_epochs(start: Any) -> bool:
 
 def _span_of_pass(row: Any) -> tuple[str, str]:
     """Rise and set of a row of `umov.passes`."""
-    if hasattr(row, "colnames") and not hasattr(row, "index"):  # a whole table
+    if columns_of(row) is not None:
         raise UsageError(f"a table of {len(row)} passes; one row was expected, such as table[0], or a start and a stop")
     try:
         rise, end = str(row["rise_utc"]), str(row["set_utc"])

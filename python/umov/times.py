@@ -93,12 +93,25 @@ def utc(time: AnyTime) -> str:
                      "(\"2018-01-21T04:00:00Z\"), an aware datetime or an astropy Time")
 
 
+def columns_of(value: Any) -> list[str] | None:
+    """Names of the columns of a table of astropy, of pandas or of umov; None for what is none, a row of one too."""
+    if hasattr(value, "colnames") and not hasattr(value, "index"):
+        return list(value.colnames)
+    if hasattr(value, "columns") and hasattr(value, "iloc"):
+        return [str(one) for one in value.columns]
+    return list(value.names) if hasattr(value, "to_qtable") and hasattr(value, "names") else None
+
+
 def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
     """Times of a call, and whether it was a single one."""
     if isinstance(times, (str, datetime.datetime)):
         return [utc(times)], True
     if (_is_astropy(times) and times.isscalar) or (_is_skyfield(times) and not getattr(times, "shape", ())):
         return [utc(times)], True
+    columns = columns_of(times)
+    if columns is not None:
+        raise UsageError(f"a table with the columns {', '.join(columns)}; times were expected. Give its column of time, such as "
+                         f'table["{next((one for one in columns if "time" in one.lower()), "time_utc")}"].')
     listed: Any = times
     if _is_skyfield(listed):  # whose several are no list
         return [_umov.check_time(one) for one in listed.utc_iso(places=9)], False
