@@ -1,11 +1,15 @@
 """Tables of jobs: equal to what they were pickled from, short to look at, whole when they are written."""
 import copy
+import io
 import pickle
+import re
 
+import astropy.table
 import numpy as np
 import pandas as pd
 import pytest
 from astropy import units as u
+from astropy.io import ascii
 from astropy.table import QTable, Table
 from astropy.time import Time
 
@@ -45,7 +49,19 @@ def test_a_table_is_shown_with_few_digits_and_written_with_all(passes, tmp_path)
     for path, read in (("a.ecsv", QTable.read), ("a.fits", QTable.read), ("a.csv", lambda p: Table.read(p, format="ascii.csv"))):
         passes.write(tmp_path / path)
         assert np.array_equal(np.asarray(read(tmp_path / path)["rise_az"]), passes["rise_az"].value), path
-    assert passes["rise_az"].info.format == ".4f"  # what was written did not change it
+    assert all(passes[name].info.format is None for name in passes.colnames)
+    text = io.StringIO()
+    ascii.write(passes, text, format="ecsv")
+    plain = astropy.table.QTable(passes)
+    plain.write(tmp_path / "plain.ecsv")
+    for all_digits in (text.getvalue(), (tmp_path / "plain.ecsv").read_text()):
+        assert np.array_equal(QTable.read(all_digits, format="ascii.ecsv")["rise_az"].value, passes["rise_az"].value)
+    passes.write.list_formats(io.StringIO())
+    own = passes.copy()
+    own["rise_az"].info.format = ".1f"
+    assert "234.4 " in f"{own['rise_az', 'culmination_alt']} " and own["rise_az"].info.format == ".1f"
+    own.write(tmp_path / "own.csv")
+    assert "234.4," in (tmp_path / "own.csv").read_text()  # a format of one's own is one's own
     assert pickle.loads(pickle.dumps(passes))["rise_az"].value.tolist() == passes["rise_az"].value.tolist()
     for part in (passes[:1], passes["name", "rise_az"], passes[passes["rise_az"].value > 0]):
         part.write(tmp_path / "part.ecsv", overwrite=True)
@@ -55,9 +71,11 @@ def test_a_table_is_shown_with_few_digits_and_written_with_all(passes, tmp_path)
 
 def test_days_keep_their_digits_on_sight(curve):
     """A millisecond is 1e-8 d."""
-    row = curve.to_qtable()["mjd_utc"][:1]
-    assert str(row).split("[")[-1].strip("] d") and f"{row[0].value:.8f}" in curve.to_qtable()["mjd_utc", "mag"][:1].pformat()[-1]
-    assert curve.to_qtable()["mjd_utc"].info.format == ".8f"
+    table = curve.to_qtable()["mjd_utc", "mag"]
+    shown = f"{table['mjd_utc'][0].value:.8f}"
+    assert shown in table[:1].pformat()[-1] and f"{shown}0" not in str(table[:1]) and len(shown) == 14
+    for text in (repr(table), table._repr_html_(), str(table[0])):
+        assert re.search(rf"(?<![0-9]){re.escape(shown)}(?![0-9])", text)
 
 
 def test_a_format_of_ones_own_takes_no_digits_off_an_answer():

@@ -45,15 +45,6 @@ def same(one: NDArray[Any], other: NDArray[Any]) -> bool:
     return one.shape == other.shape and bool(np.array_equal(one, other, equal_nan=one.dtype.kind == "f" and other.dtype.kind == "f"))
 
 
-def _format(name: str, unit: str, precision: tuple[str, int, int]) -> str:
-    """How a notebook shows a number: angles to .4 deg, times of day as they are; all digits stay beneath."""
-    if unit == "deg" or unit.startswith("mag"):
-        return ".4f"
-    if name.startswith(("mjd", "jd")):
-        return ".8f"
-    return f".{precision[2] or 7}g"
-
-
 class Table(Made):
     """Rows of a job, column by column. Numbers are read-only numpy views of the library's memory.
 
@@ -127,13 +118,13 @@ class Table(Made):
 
     def to_qtable(self) -> QTable:
         """The same as an astropy QTable: every column of floats has a unit, the notes are in `meta`. It is shown with a few
-        digits (`info.format` of a column), and has and writes all."""
+        digits, and has and writes all; `info.format` of a column is yours."""
         from astropy import units
         from astropy.table import Column
 
         from ._shown import QTable
         out = QTable(meta=self.notes)
-        for name, unit, precision in zip(self.names, self._table.units, self._table.precisions):
+        for name, unit in zip(self.names, self._table.units):
             values = self._values(name)
             if unit.startswith("mag("):
                 out[name] = units.Magnitude(values, unit=units.Unit(unit), copy=False)
@@ -142,8 +133,6 @@ class Table(Made):
             else:  # what was made for this table need not be copied
                 out.add_column(Column(values, copy=False), name=name, copy=values.dtype.kind != "U")
             out[name].info.description = self.description(name)
-            if values.dtype.kind == "f":
-                out[name].info.format = _format(name, unit, precision)
         return out
 
     def to_pandas(self) -> pandas.DataFrame:
