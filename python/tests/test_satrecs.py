@@ -1,5 +1,6 @@
 """Orbits that sgp4 and skyfield have in memory: what umov makes of them stands where theirs do."""
 import math
+import types
 import warnings
 
 import numpy as np
@@ -72,3 +73,28 @@ def test_a_satellite_keeps_them_too(tmp_path):
     assert told["range"].value.tolist() == umov.ephemeris(_made(), "maui", "2018-01-21T05:00:00Z", "2018-01-21T05:00:20Z", step_s=10)["range"].value.tolist()
     again = umov.Satellite.from_toml(precise.to_toml(tmp_path))
     assert (tmp_path / "orbit.json").exists() and umov.ephemeris(again, "maui", "2018-01-21T05:00:00Z", "2018-01-21T05:00:20Z", step_s=10)["range"].value.tolist() == told["range"].value.tolist()
+
+
+class _Named:
+    """As skyfield has it."""
+
+    def __init__(self, name, model):
+        self.name, self.model = name, model
+
+
+@pytest.mark.parametrize("name", ["HST", "20580", "1 20580U", "2 HST", "x" * 300, "Müller", "0 HST", "# HST", "(HST)"])
+def test_any_name_of_an_object_is_its_name(name):
+    """A line of TLEs cannot tell a number, or what begins like an element line, from a name."""
+    satrec = sgp4.Satrec.twoline2rv(*LINES)
+    table = umov.passes(_Named(name, satrec), "maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z")
+    assert set(table["name"].tolist()) == {name} and len(table) == len(umov.passes(satrec, "maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z"))
+
+
+@pytest.mark.parametrize(("key", "value", "told"), [("jdsatepoch", 1e9, "has its epoch at JD 1000000000"), ("jdsatepoch", 0.0, "has its epoch at JD"),
+                                                    ("ndot", math.inf, "has ndot = inf; a finite number"), ("nddot", math.nan, "has nddot = nan")])
+def test_what_no_message_can_hold_is_told(key, value, told):
+    whole = sgp4.Satrec.twoline2rv(*LINES)
+    keys = ("satnum", "jdsatepoch", "jdsatepochF", "ecco", "inclo", "nodeo", "argpo", "mo", "no_kozai", "bstar", "ndot", "nddot", "mu", "radiusearthkm")
+    other = types.SimpleNamespace(**{**{one: getattr(whole, one) for one in keys}, key: value})
+    with pytest.raises(umov.UsageError, match=f"the Satrec of 20580 {told}"):
+        umov.propagate(other, TIMES)

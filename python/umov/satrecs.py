@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import json
 import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,6 +15,10 @@ from .errors import UsageError
 _RATE = 1440 / (2 * math.pi)  # rad/min to revolutions a day
 #: mu [km3/s2] and radius [km] of the constants for which sets are made, and which umov has (Vallado et al. 2006, section II).
 _WGS72 = (398600.8, 6378.135)
+#: Julian dates of the years that a date can have.
+_CALENDAR = (1721425.5, 5373119.5)
+#: Names that a line over two others can be: neither an element set's number nor one of its lines.
+_NAME = re.compile(r"[A-Za-z][ -~]{0,23}\Z")
 #: What orbits follow from.
 _ELEMENTS = ("ecco", "inclo", "nodeo", "argpo", "mo", "no_kozai", "bstar", "jdsatepoch", "jdsatepochF")
 
@@ -35,7 +40,7 @@ def _told(name: str, model: Any) -> str:
 
 def _check(name: str, model: Any) -> None:
     """Elements of which there is an orbit."""
-    for key in _ELEMENTS:
+    for key in (*_ELEMENTS, "ndot", "nddot"):
         if not math.isfinite(getattr(model, key)):
             raise UsageError(f"{_told(name, model)} has {key} = {getattr(model, key)!r}; a finite number was expected. Was it made by "
                              "twoline2rv or sgp4init?")
@@ -43,6 +48,9 @@ def _check(name: str, model: Any) -> None:
         if not least <= getattr(model, key) <= most:
             raise UsageError(f"{_told(name, model)} has {key} = {getattr(model, key)!r}; a number from {least:.3g} to {most:.6g} was expected "
                              "(radians, and radians a minute)")
+    day = model.jdsatepoch + model.jdsatepochF
+    if not _CALENDAR[0] <= day < _CALENDAR[1]:
+        raise UsageError(f"{_told(name, model)} has its epoch at JD {day!r}; one of the years 1 to 9998 was expected")
 
 
 def _warn_of_constants(objects: Sequence[tuple[str, Any]]) -> None:
@@ -58,7 +66,9 @@ def _warn_of_constants(objects: Sequence[tuple[str, Any]]) -> None:
 
 
 def _lines(name: str, model: Any) -> str | None:
-    """The lines of a TLE, None where they would lose digits: elements of sgp4init and of an OMM have more than they hold."""
+    """The lines of a TLE, None where they would lose digits or the name: elements of sgp4init and of an OMM have more than they hold."""
+    if name and not _NAME.match(name):
+        return None
     try:
         from sgp4.api import WGS72, Satrec
         from sgp4.exporter import export_tle
