@@ -93,7 +93,7 @@ def test_glb_of_trimesh_is_turned_only_where_one_says_so(tmp_path):
     assert "+Y up" in umov.Satellite.__doc__
 
 
-@pytest.mark.parametrize("name", ("wing\\", "a\\b", "a\x7fb", "a\x85b", "a\u2028b", "a\u200bb"))
+@pytest.mark.parametrize("name", ("wing\\", "a\\b", "a\x7fb", "a\x85b", "a\u2028b", "a\u200bb", "#b", "a # b"))
 def test_a_group_that_an_obj_cannot_name_is_refused(name):
     """A backslash at the end of a line of an OBJ takes the next line, a triangle, for its own."""
     with pytest.raises(umov.UsageError, match="a group is named"):

@@ -260,7 +260,7 @@ def _triangles(part: Any, unit: str, group: str) -> tuple[Any, Any, list[str]]:
 def _checked(names: list[str]) -> list[str]:
     """As an OBJ file can hold them."""
     for name in dict.fromkeys(names):
-        if not name.strip() or name != name.strip() or not name.isprintable() or "\\" in name:  # which goes on in the next line of an OBJ
-            raise UsageError(f"a group is named {name!r}; a name that can be printed was expected, without spaces at its ends and "
-                             "without a backslash")
+        if not name.strip() or name != name.strip() or not name.isprintable() or "\\" in name or " #" in f" {name}":  # a line that goes on, a comment
+            raise UsageError(f"a group is named {name!r}; a name that can be printed was expected, without spaces at its ends, "
+                             "a backslash, or a # that begins a word")
     return names
