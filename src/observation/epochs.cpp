@@ -121,9 +121,18 @@ Pass describe_pass(const Track &track, const PassSpan &span, Epoch<Utc> first, E
   return out;
 }
 
+/// Epochs of one's own may leave a pass anywhere: it is up before the first of them, after the
+/// last.
+void open_by_own(Pass &pass, const PassSpan &span) {
+  constexpr double least_s = 2e-3; // as crossings are good
+  pass.is_open_at_start |= seconds_between(pass.rise, span.rise) > least_s;
+  pass.is_open_at_end |= seconds_between(span.set, pass.set) > least_s;
+}
+
 /// Adds what the filter keeps of the epochs of one pass, from `grid` on.
 void add_pass(KeptEpochs &out, const Track &track, const GridPass &pass,
-              std::span<const EpochGeometry> grid, std::size_t behind, const EpochFilter &only) {
+              std::span<const EpochGeometry> grid, std::size_t behind, const EpochFilter &only,
+              bool is_own) {
   const auto above = [&only](const EpochGeometry &epoch) { return is_above(epoch, only); };
   const auto first = std::find_if(grid.begin(), grid.end(), above);
   if (first == grid.end())
@@ -144,20 +153,24 @@ void add_pass(KeptEpochs &out, const Track &track, const GridPass &pass,
   Pass &described = out.passes.back();
   described.is_open_at_start = pass.first == 0 && first == grid.begin();
   described.is_open_at_end = pass.behind == behind && last == grid.rbegin();
+  if (is_own)
+    open_by_own(described, pass.span);
   described.rows = out.geometry.size() - before;
 }
 
-/// Epochs of one's own stand in order, each once: what lies between two of them is looked up.
+/// Epochs of one's own stand in order, each once: what lies between two of them is looked up. Times
+/// of tables have milliseconds; closer epochs would be one there.
 Result<std::size_t> count_of_own(const std::vector<Epoch<Utc>> &own) {
   if (own.size() > max_epochs)
     return fail(ErrorCode::BadInput,
                 fmt::format("{} epochs; the limit is {}", own.size(), max_epochs));
+  constexpr double least_s = 1e-3 - 1e-9;
   const auto back = std::ranges::adjacent_find(
-      own, [](Epoch<Utc> a, Epoch<Utc> b) { return !(seconds_between(b, a) > 0); });
+      own, [](Epoch<Utc> a, Epoch<Utc> b) { return !(seconds_between(b, a) > least_s); });
   if (back != own.end())
     return fail(ErrorCode::BadInput,
                 fmt::format("epoch {} is {}, and the one before it {}; epochs in order of time, "
-                            "each once, were expected",
+                            "each once and a millisecond apart, were expected",
                             back - own.begin() + 2, to_iso_exact(*(back + 1)),
                             to_iso_exact(*back)));
   return own.size();
@@ -227,7 +240,8 @@ Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const 
   std::size_t at = 0;
   for (const GridPass &pass : found.passes) {
     const std::size_t count = pass.behind - pass.first;
-    add_pass(out, track, pass, std::span(grid).subspan(at, count), found.behind, only);
+    add_pass(out, track, pass, std::span(grid).subspan(at, count), found.behind, only,
+             !span.own.empty());
     at += count;
   }
   return out;

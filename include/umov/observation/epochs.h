@@ -20,7 +20,7 @@ struct Pass {
   std::string id;                          ///< NORAD number dash culmination time
   Epoch<Utc> rise{}, culmination{}, set{}; ///< to the step, except the culmination (refined)
   Angle culmination_altitude;
-  bool is_open_at_start = false, is_open_at_end = false; ///< goes on beyond the span
+  bool is_open_at_start = false, is_open_at_end = false; ///< goes on beyond its epochs
   std::size_t rows = 0;                                  ///< epochs kept by the filter
 };
 

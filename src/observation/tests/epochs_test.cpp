@@ -111,6 +111,22 @@ TEST(KeptEpochs, ASpanThatCutsAPassKeepsItsName) {
   EXPECT_EQ(kept->passes[0].id, "7-20180320T120500Z");
 }
 
+TEST(KeptEpochs, EpochsOfOnesOwnLeaveAPassThatGoesOn) {
+  // Passes culminate at 300 and 900 s: up before and after each of these.
+  EpochSpan own = by_day.span(1190, 10);
+  for (const double s : {290.0, 300.0, 900.0})
+    own.own.push_back(plus_seconds(by_day.start, s));
+  const auto kept = keep_epochs(track_of(by_day), own, above_30_deg(), 1, no_cancel);
+  ASSERT_TRUE(kept);
+  ASSERT_EQ(kept->passes.size(), 2u);
+  for (const Pass &pass : kept->passes) {
+    EXPECT_TRUE(pass.is_open_at_start);
+    EXPECT_TRUE(pass.is_open_at_end);
+  }
+  own.own.push_back(plus_seconds(by_day.start, 900.0004));
+  EXPECT_FALSE(keep_epochs(track_of(by_day), own, above_30_deg(), 1, no_cancel));
+}
+
 TEST(KeptEpochs, TheSkyMustBeDarkAndTheObjectLit) {
   // Equinox, longitude 0: the Sun stands overhead at noon, and the object, 1000 km up, is deep in
   // the Earth's shadow at midnight.
