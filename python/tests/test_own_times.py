@@ -53,6 +53,9 @@ def test_times_out_of_order_or_beside_a_span_are_refused(hst):
     own = hst.light_curve("maui", MINE, **BANDS).scenario
     with pytest.raises(umov.InputError, match="step_s: epochs stand in place of start, stop and step_s"):
         umov.Scenario(own, set={"time.step_s": 2})
+    for wrong, told in (([1, 2], "1 is not a time"), (["noon"], "noon.* is not a time")):
+        with pytest.raises(umov.InputError, match=told):
+            umov.Scenario(own, set={"time.epochs": wrong})
     with pytest.raises(umov.NoResult, match=r"no epoch of \[time\] epochs falls in a pass|no sunlit pass"):
         hst.light_curve("maui", MINE + np.arange(1, 5) * u.h, **BANDS)
 

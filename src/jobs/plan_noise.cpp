@@ -97,12 +97,15 @@ Result<InstrumentErrors> InstrumentErrors::make(const Scenario &scenario,
   }
   const ExposureSetup &first = out.setups_.front();
   const double set_s = first.states * std::max(o.exposure_s, o.cadence_s);
-  if (first.states > 1 && set_s > scenario.time->step_s)
+  const ScenarioTime &time = *scenario.time;
+  const bool is_own = !time.epochs.empty();
+  if (first.states > 1 && time.epochs.size() != 1 && set_s > time.step_s)
     return fail(ErrorCode::BadInput,
-                fmt::format("time.step_s = {:g}, but a set of {:g} states with this polarimeter "
-                            "takes {:g} s; make the step as long",
-                            scenario.time->step_s, first.states, set_s),
-                scenario.place("time.step_s"));
+                fmt::format("{} = {:g}{}, but a set of {:g} states with this polarimeter takes "
+                            "{:g} s; make the step as long",
+                            is_own ? "the shortest step of time.epochs" : "time.step_s",
+                            time.step_s, is_own ? " s" : "", first.states, set_s),
+                scenario.place(is_own ? "time.epochs" : "time.step_s"));
   out.exposure_s_ = o.exposure_s;
   out.name_ = o.instrument.name;
   return out;

@@ -460,6 +460,10 @@ nlohmann::ordered_json schema_of(std::string_view table) {
       if (below == "object" || below == "material.layers" || below == "object.part" ||
           below == "observation.sequence")
         entry["items"] = schema_of(below);
+      if (below == "time.epochs") {
+        entry["items"] = {{"type", "string"}, {"format", "date-time"}};
+        entry["minItems"] = 1;
+      }
       break;
     case Kind::Table:
       if (below == "material")

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <sstream>
 #include <umov/core/text.h>
 #include <umov/time/typed.h>
 
@@ -286,8 +287,14 @@ namespace {
 Result<Epoch<Utc>> time_from(const toml::node &node) {
   if (const auto day = node.value<toml::date>())
     return utc_from_iso_or_day(fmt::format("{:04}-{:02}-{:02}", day->year, day->month, day->day));
-  const auto stamp = node.value<toml::date_time>();
-  return utc_from_iso_or_day(stamp ? iso_of(*stamp) : node.value_or(std::string()));
+  if (const auto stamp = node.value<toml::date_time>())
+    return utc_from_iso_or_day(iso_of(*stamp));
+  if (node.is_string())
+    return utc_from_iso_or_day(node.value_or(std::string()));
+  std::ostringstream told;
+  node.visit([&told](const auto &value) { told << value; });
+  return fail(ErrorCode::BadInput, told.str() + " is not a time; one like 2018-01-21T05:00:00Z was "
+                                                "expected");
 }
 
 } // namespace
