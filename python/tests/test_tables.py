@@ -69,6 +69,18 @@ def test_a_table_is_shown_with_few_digits_and_written_with_all(passes, tmp_path)
     assert len(str(passes[0]).splitlines()[-1]) < 560
 
 
+@pytest.mark.filterwarnings("ignore::astropy.io.votable.exceptions.W50")  # mag(AB) is no unit of VOTables
+def test_tables_are_written_as_votables(curve, tmp_path):
+    """Integers are numpy's own int64: astropy's writer of VOTables asks for the letter of a type."""
+    table = curve.to_table()
+    integers = [name for name in table.colnames if table[name].dtype == np.int64]
+    assert integers
+    table.write(tmp_path / "x.vot", format="votable")
+    back = Table.read(tmp_path / "x.vot")
+    for name in integers:
+        assert (back[name] == table[name]).all()
+
+
 def test_days_keep_their_digits_on_sight(curve):
     """A millisecond is 1e-8 d."""
     table = curve.to_qtable()["mjd_utc", "mag"]

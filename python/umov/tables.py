@@ -126,6 +126,8 @@ class Table(Made):
         out = QTable(meta=self.notes)
         for name, unit in zip(self.names, self._table.units):
             values = self._values(name)
+            if values.dtype == np.int64:  # C's long and long long are one type to numpy, not to all that asks for its letter
+                values = values.view(np.int64)
             if unit.startswith("mag("):
                 out[name] = units.Magnitude(values, unit=units.Unit(unit), copy=False)
             elif unit or values.dtype.kind == "f":

@@ -126,7 +126,8 @@ Result<void> read_epochs(const Node &node, ScenarioTime &out) {
     if (node.has(name))
       return fail(ErrorCode::BadInput,
                   fmt::format("{}: epochs stand in place of start, stop and step_s; one way of "
-                              "saying it was expected",
+                              "saying it was expected (set as a whole, time = {{ epochs = [...] }} "
+                              "takes the place of both)",
                               name),
                   node.where(name));
   for (const toml::node &item : *node.get("epochs")->as_array()) {
