@@ -129,8 +129,8 @@ void tell_apart(std::vector<Band> &bands, const std::map<std::size_t, std::strin
       if (j != k && end_of(other, 1) == end_of(path, 1) && other != path)
         others.emplace_back(other);
     std::size_t count = 1;
-    const auto is_like = [&](const auto &other) {
-      return end_of(other, count) == end_of(path, count);
+    const auto is_like = [&count, &own = path](const std::filesystem::path &other) {
+      return end_of(other, count) == end_of(own, count);
     };
     constexpr std::size_t deepest = 100;
     while (count < deepest && std::ranges::any_of(others, is_like))
