@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 class PartFit {
 public:
   PartFit(const CurveLikelihood &likelihood, const ModelLight &model);
-  CurveLikelihood::FittedLight run(std::span<const double> near);
+  CurveLikelihood::FittedLight run();
 
 private:
   /// Part and whether it is its slope.
@@ -278,10 +278,8 @@ bool PartFit::step(VectorXd &off) {
   return length < smallest;
 }
 
-CurveLikelihood::FittedLight PartFit::run(std::span<const double> near) {
+CurveLikelihood::FittedLight PartFit::run() {
   VectorXd off = VectorXd::Zero(static_cast<Index>(unknowns_.size()));
-  if (near.size() == unknowns_.size())
-    std::ranges::copy(near, off.begin());
   VectorXd best = off;
   double least = 1e300;
   constexpr int rounds = 8;
@@ -311,9 +309,8 @@ CurveLikelihood::FittedLight PartFit::run(std::span<const double> near) {
 
 namespace umov {
 
-CurveLikelihood::FittedLight CurveLikelihood::fit_parts(const ModelLight &model,
-                                                        std::span<const double> near) const {
-  return inverse::PartFit(*this, model).run(near);
+CurveLikelihood::FittedLight CurveLikelihood::fit_parts(const ModelLight &model) const {
+  return inverse::PartFit(*this, model).run();
 }
 
 } // namespace umov

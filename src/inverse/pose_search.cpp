@@ -169,7 +169,8 @@ bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
 /// How the last fits are run. Glints hold two directions a hundred times better than the third:
 /// along such a valley, which bends, a dozen steps reach nothing.
 inverse::FitPlan last_steps(Freedom freedom, const SearchOptions &options) {
-  return {freedom, 200, 12, 24, 1e-3, options.threads, true};
+  const bool has_rate = freedom == Freedom::AttitudeAndRate; // attitudes alone are lit quickly
+  return {freedom, 200, 12, 24, 1e-3, options.threads, has_rate};
 }
 
 /// Peaks, and samples drawn from them.

@@ -39,13 +39,10 @@ bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
   const auto free = static_cast<Eigen::Index>(plan.freedom);
   const double span = span_of(model.curve(), epochs), h = plan.difference_rad;
   std::vector<Turning> near;
-  std::vector<std::span<const double>> parts;
   for (const Running *one : fits)
-    for (Eigen::Index p = 0; p < free; ++p) {
+    for (Eigen::Index p = 0; p < free; ++p)
       near.push_back(stepped(one->fit.turning, Step::Unit(free, p) * h, span));
-      parts.emplace_back(one->fit.at.off);
-    }
-  const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true, parts);
+  const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true);
   if (compared.empty() && !near.empty())
     return false;
   for (std::size_t k = 0; k < fits.size(); ++k) {
@@ -151,12 +148,11 @@ double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) 
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
                                     std::span<const Turning> turnings,
                                     std::span<const std::size_t> epochs, unsigned threads,
-                                    bool keeps_residuals,
-                                    std::span<const std::span<const double>> near) {
+                                    bool keeps_residuals) {
   std::vector<Comparison> out(turnings.size());
   const bool is_whole =
       model.for_each(turnings, epochs, threads, [&](std::size_t k, const ModelLight &light) {
-        out[k] = likelihood.compare(light, near.empty() ? std::span<const double>() : near[k]);
+        out[k] = likelihood.compare(light);
         if (!keeps_residuals)
           out[k].residuals = {};
       });
@@ -186,12 +182,9 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     if (!differentiate(model, likelihood, active, epochs, plan))
       return {};
     std::vector<Turning> tried;
-    std::vector<std::span<const double>> parts;
-    for (const Running *one : active) {
+    for (const Running *one : active)
       tried.push_back(stepped(one->fit.turning, step_of(*one), span));
-      parts.emplace_back(one->fit.at.off);
-    }
-    const auto compared = compare_all(model, likelihood, tried, epochs, plan.threads, true, parts);
+    const auto compared = compare_all(model, likelihood, tried, epochs, plan.threads, true);
     if (compared.empty())
       return {};
     for (std::size_t k = 0; k < active.size(); ++k)
