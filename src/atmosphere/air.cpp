@@ -34,19 +34,22 @@ Gases parse_gases() {
   return out;
 }
 
-/// Linear between the points; outside nothing is absorbed.
-double at(double nm, std::vector<double> Gases::*column) {
-  static const Gases table = parse_gases();
-  const auto &x = table.nm;
-  const auto &y = table.*column;
-  if (!(nm >= x.front() && nm <= x.back()))
-    return 0;
+/// Linear between the points x, which rise and among which nm lies.
+double between(double nm, const std::vector<double> &x, const std::vector<double> &y) {
   const auto k = static_cast<std::size_t>(
       std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), nm) - x.begin()));
   return y[k - 1] + (y[k] - y[k - 1]) * (nm - x[k - 1]) / (x[k] - x[k - 1]);
 }
 
-/// Linear between the points of a table.
+/// Outside nothing is absorbed.
+double at(double nm, std::vector<double> Gases::*column) {
+  static const Gases table = parse_gases();
+  if (!(nm >= table.nm.front() && nm <= table.nm.back()))
+    return 0;
+  return between(nm, table.nm, table.*column);
+}
+
+/// Beyond its ends as there.
 double at(double nm, const MeasuredExtinction &table) {
   if (table.nm.empty() || table.nm.size() != table.mag.size())
     return std::nan("");
@@ -54,10 +57,7 @@ double at(double nm, const MeasuredExtinction &table) {
     return table.mag.front();
   if (nm >= table.nm.back())
     return table.mag.back();
-  const auto k = static_cast<std::size_t>(std::upper_bound(table.nm.begin(), table.nm.end(), nm) -
-                                          table.nm.begin());
-  return std::lerp(table.mag[k - 1], table.mag[k],
-                   (nm - table.nm[k - 1]) / (table.nm[k] - table.nm[k - 1]));
+  return between(nm, table.nm, table.mag);
 }
 
 constexpr double sea_level_hpa = 1013.25;

@@ -87,34 +87,47 @@ std::size_t nearest(const std::vector<Proposal> &mixture, const Turning &at, dou
   return best;
 }
 
-/// Weights, from their logarithms, to the power that leaves them worth `wanted` samples; none where
-/// no power does. Where a proposal misses the shape of a peak a few draws hold all of the weight,
-/// and say nothing of a covariance; what lies between proposal and peak leads from one to the
-/// other.
-std::vector<double> evened(const std::vector<double> &log_weights, double wanted) {
-  std::vector<double> out;
+/// Weights, from their logarithms, to a power; of the highest 1.
+std::vector<double> to_power(const std::vector<double> &log_weights, double power) {
   const double highest = *std::ranges::max_element(log_weights);
-  const auto effective = [&](double power) {
-    double sum = 0, squares = 0;
-    out.clear();
-    for (const double w : log_weights) {
-      out.push_back(w > no_weight ? std::exp(power * (w - highest)) : 0);
-      sum += out.back();
-      squares += out.back() * out.back();
-    }
-    return sum * sum / squares;
-  };
-  if (!(highest > no_weight))
-    return {};
-  if (effective(1) >= wanted)
-    return out;
-  double low = 0, high = 1;
+  std::vector<double> out;
+  out.reserve(log_weights.size());
+  for (const double w : log_weights)
+    out.push_back(w > no_weight ? std::exp(power * (w - highest)) : 0);
+  return out;
+}
+
+/// How many samples weights are worth.
+double worth(const std::vector<double> &weights) {
+  double sum = 0, squares = 0;
+  for (const double w : weights) {
+    sum += w;
+    squares += w * w;
+  }
+  return sum * sum / squares;
+}
+
+/// The largest power, `most` at most, that leaves weights worth `wanted` samples; 0 if none does.
+double power_worth(const std::vector<double> &log_weights, double most, double wanted) {
+  if (worth(to_power(log_weights, most)) >= wanted)
+    return most;
+  double low = 0, high = most;
   constexpr int halvings = 40;
   for (int k = 0; k < halvings; ++k) {
     const double middle = (low + high) / 2;
-    (effective(middle) >= wanted ? low : high) = middle;
+    (worth(to_power(log_weights, middle)) >= wanted ? low : high) = middle;
   }
-  return effective(low) >= wanted ? out : std::vector<double>();
+  return low;
+}
+
+/// Weights to the power that leaves them worth `wanted` samples; none where no power does. Where a
+/// proposal misses the shape of a peak a few draws hold all of the weight, and say nothing of a
+/// covariance; what lies between proposal and peak leads from one to the other.
+std::vector<double> evened(const std::vector<double> &log_weights, double wanted) {
+  if (log_weights.empty() || !(*std::ranges::max_element(log_weights) > no_weight))
+    return {};
+  auto out = to_power(log_weights, power_worth(log_weights, 1, wanted));
+  return worth(out) >= wanted ? out : std::vector<double>();
 }
 
 /// Weights and covariances of modes from their samples.
@@ -134,8 +147,7 @@ void update(std::vector<PoseMode> &modes, const std::vector<Proposal> &mixture,
     steps[m].push_back(step_between(mixture[m].centre, draws[k].turning, n, span_s));
   }
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    const std::vector<double> even =
-        own[m].empty() ? std::vector<double>() : evened(own[m], wanted);
+    const std::vector<double> even = evened(own[m], wanted);
     if (even.empty())
       continue;
     Eigen::MatrixXd second = Eigen::MatrixXd::Zero(n, n);
@@ -268,26 +280,12 @@ namespace {
 
 /// The next power of the likelihood that leaves half of the sample effective.
 double next_power(const std::vector<PoseSample> &draws, double power, double wanted) {
-  const auto effective = [&](double next) {
-    double sum = 0, squares = 0, least = 1e300;
-    for (const PoseSample &s : draws)
-      least = std::min(least, s.minus_2_log);
-    for (const PoseSample &s : draws) {
-      const double w = std::exp(-(next - power) * (s.minus_2_log - least) / 2);
-      sum += w;
-      squares += w * w;
-    }
-    return sum * sum / squares;
-  };
-  if (effective(1) >= wanted)
-    return 1;
-  double low = power, high = 1;
-  constexpr int halvings = 40;
-  for (int k = 0; k < halvings; ++k) {
-    const double middle = (low + high) / 2;
-    (effective(middle) >= wanted ? low : high) = middle;
-  }
-  return std::max(low, power + 1e-9);
+  std::vector<double> log_weights;
+  log_weights.reserve(draws.size());
+  for (const PoseSample &s : draws)
+    log_weights.push_back(-s.minus_2_log / 2);
+  const double more = power_worth(log_weights, 1 - power, wanted);
+  return more < 1 - power ? power + std::max(more, 1e-9) : 1;
 }
 
 /// Systematic resampling by the weights that a higher power gives; adds to the evidence.

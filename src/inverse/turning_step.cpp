@@ -60,28 +60,32 @@ Vec3<Body> tilt_and_roll(const Quaternion &from, const Quaternion &to, const Vec
   return turn_between(from, turned(to, axis * -turn)) + axis * turn;
 }
 
-/// Derivatives of rotation vector and rate with the six numbers of a step about a spin.
-Matrix6 by_step(const Turning &about, double span_s) {
-  const double rate = norm(about.rate_rad_s);
+/// Derivatives of rotation vector and rate with the six numbers of a step (`is_back`: the other way
+/// round), about no step.
+Matrix6 by_step(const Turning &about, double span_s, bool is_back) {
+  Matrix6 out = Matrix6::Identity();
+  const double rate = norm(about.rate_rad_s), along_s = is_back ? span_s : 1 / span_s;
+  if (!has_axis(about, span_s)) {
+    out.bottomRightCorner<3, 3>() *= along_s;
+    return out;
+  }
   const Eigen::Vector3d u = eigen_of(about.rate_rad_s) / rate;
   const Eigen::Matrix3d along = u * u.transpose(), all = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d cross_u; // cross_u v = u x v
   cross_u << 0, -u[2], u[1], u[2], 0, -u[0], -u[1], u[0], 0;
-  Matrix6 out = Matrix6::Identity();
-  out.topRightCorner<3, 3>() = along - all;
-  out.bottomRightCorner<3, 3>() = along / span_s - rate * cross_u;
+  const Eigen::Matrix3d across = is_back ? Eigen::Matrix3d(cross_u / rate) : cross_u * -rate;
+  out.topRightCorner<3, 3>() = is_back ? across : Eigen::Matrix3d(along - all);
+  out.bottomRightCorner<3, 3>() = along * along_s + across;
   return out;
 }
 
-Matrix6 to_step(const Turning &about, double span_s) {
-  const double rate = norm(about.rate_rad_s);
-  const Eigen::Vector3d u = eigen_of(about.rate_rad_s) / rate;
-  Eigen::Matrix3d cross_u;
-  cross_u << 0, -u[2], u[1], u[2], 0, -u[0], -u[1], u[0], 0;
-  Matrix6 out = Matrix6::Identity();
-  out.topRightCorner<3, 3>() = cross_u / rate;
-  out.bottomRightCorner<3, 3>() = u * u.transpose() * span_s + cross_u / rate;
-  return out;
+/// A covariance by derivatives of its six numbers; of an attitude's three, as it is.
+Eigen::MatrixXd carried(const Eigen::MatrixXd &covariance, const Turning &about, double span_s,
+                        bool is_back) {
+  if (covariance.rows() < 6)
+    return covariance;
+  const Matrix6 by = by_step(about, span_s, is_back);
+  return by * covariance * by.transpose();
 }
 
 } // namespace
@@ -131,29 +135,14 @@ double log_volume(const Turning &from, const Step &step, double span_s) {
 
 std::vector<double> out_of_steps(const Eigen::MatrixXd &covariance, const Turning &about,
                                  double span_s) {
-  Eigen::MatrixXd out = covariance;
-  if (out.rows() >= 6 && has_axis(about, span_s)) {
-    const Matrix6 by = by_step(about, span_s);
-    out = by * covariance * by.transpose();
-  } else if (out.rows() >= 6) {
-    out.bottomRows(3) /= span_s;
-    out.rightCols(3) /= span_s;
-  }
+  const Eigen::MatrixXd out = carried(covariance, about, span_s, false);
   return {out.data(), out.data() + out.size()};
 }
 
 Eigen::MatrixXd in_steps(const std::vector<double> &covariance, const Turning &about,
                          double span_s) {
   const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(covariance.size())));
-  Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
-  if (n >= 6 && has_axis(about, span_s)) {
-    const Matrix6 by = to_step(about, span_s);
-    out = (by * out * by.transpose()).eval();
-  } else if (n >= 6) {
-    out.bottomRows(3) *= span_s;
-    out.rightCols(3) *= span_s;
-  }
-  return out;
+  return carried(Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n), about, span_s, true);
 }
 
 } // namespace umov::inverse

@@ -60,9 +60,10 @@ struct GridPasses {
   std::size_t behind = 0;       ///< epochs before that
 };
 
+constexpr double slack_s = 2e-3; // crossings and edges are good to a millisecond
+
 GridPasses find_on_grid(const TrackRequest &track, const std::vector<Epoch<Utc>> &times,
                         Angle altitude_min, const std::atomic<bool> &cancel) {
-  constexpr double slack_s = 2e-3; // crossings and edges are good to a millisecond
   const auto index = [&times](Epoch<Utc> time) {
     const auto at = std::partition_point(times.begin(), times.end(), [time](Epoch<Utc> one) {
       return seconds_between(one, time) < 0;
@@ -124,9 +125,8 @@ Pass describe_pass(const Track &track, const PassSpan &span, Epoch<Utc> first, E
 /// Epochs of one's own may leave a pass anywhere: it is up before the first of them, after the
 /// last.
 void open_by_own(Pass &pass, const PassSpan &span) {
-  constexpr double least_s = 2e-3; // as crossings are good
-  pass.is_open_at_start |= seconds_between(pass.rise, span.rise) > least_s;
-  pass.is_open_at_end |= seconds_between(span.set, pass.set) > least_s;
+  pass.is_open_at_start |= seconds_between(pass.rise, span.rise) > slack_s;
+  pass.is_open_at_end |= seconds_between(span.set, pass.set) > slack_s;
 }
 
 /// Adds what the filter keeps of the epochs of one pass, from `grid` on.

@@ -48,21 +48,27 @@ PixelFrame trail() {
   return out;
 }
 
-/// A trail of 11 px of an image of sigma 1 px: what two pixels around it hold, in closed form.
-TEST(Trail, BoxAroundIt) {
-  const double width = std::sqrt(8 * std::log(2.));
+/// Light of a trail along a row, of an image of sigma `fine` pixels, in the pixels around it whose
+/// corners are two sigmas away: `fine` pixels stand for one.
+double light_in_box(int fine, double length, PixelFrame frame, int x0, int y0) {
+  const double width = fine * std::sqrt(8 * std::log(2.));
   const PixelImage image(ImageProfile::Gauss, width);
-  PixelFrame frame = PixelFrame::blank(40, 28);
-  constexpr double length = 11, x0 = 12.5, y0 = 12.5; // corners of pixels
   for (const ExposureNode &node : exposure_nodes(1, width / 2 / length)) {
     const double light = node.weight;
-    image.add(frame, x0 + length * (.5 + node.offset_s), y0, {light, light, light, light});
+    image.add(frame, x0 + .5 + length * (.5 + node.offset_s), y0 + .5,
+              {light, light, light, light});
   }
+  const int around = 2 * fine, across = static_cast<int>(std::lround(length)) + around;
   double inside = 0;
-  for (int row = 11; row <= 14; ++row) // from 10.5 to 14.5
-    for (int column = 11; column <= 25; ++column)
+  for (int row = y0 + 1 - around; row <= y0 + around; ++row)
+    for (int column = x0 + 1 - around; column <= x0 + across; ++column)
       inside += frame.value[frame.index(column, row)];
-  EXPECT_NEAR(inside, of("trail_box"), 1e-4); // cubics of the image's table
+  return inside;
+}
+
+/// A trail of 11 px of an image of sigma 1 px: what two pixels around it hold, in closed form.
+TEST(Trail, BoxAroundIt) { // cubics of the image's table
+  EXPECT_NEAR(light_in_box(1, 11, PixelFrame::blank(40, 28), 12, 12), of("trail_box"), 1e-4);
 }
 
 /// A lens of 16 arcsec a pixel, .5 deg/s, .1 s, in pixels of a quarter of one, whose corners the
@@ -71,19 +77,8 @@ TEST(Trail, BoxAroundThatOfALens) {
   constexpr int fine = 4;
   const double length = fine * trail_length_px(.5 * pi / 180, .1, 16);
   EXPECT_NEAR(length, fine * of("trail_lens_px"), 1e-9);
-  const double width = fine * std::sqrt(8 * std::log(2.));
-  const PixelImage image(ImageProfile::Gauss, width);
-  PixelFrame frame = PixelFrame::blank(160, 112);
-  constexpr double x0 = 50.5, y0 = 50.5; // corners of pixels
-  for (const ExposureNode &node : exposure_nodes(1, width / 2 / length)) {
-    const double light = node.weight;
-    image.add(frame, x0 + length * (.5 + node.offset_s), y0, {light, light, light, light});
-  }
-  double inside = 0;
-  for (int row = 43; row <= 58; ++row) // from 42.5 to 58.5
-    for (int column = 43; column <= 103; ++column)
-      inside += frame.value[frame.index(column, row)];
-  EXPECT_NEAR(inside, of("trail_lens_box"), 1e-4); // cubics of the image's table
+  EXPECT_NEAR(light_in_box(fine, length, PixelFrame::blank(160, 112), 50, 50), of("trail_lens_box"),
+              1e-4); // cubics of the image's table
 }
 
 TEST(Trail, IsThatOfSatsim) {

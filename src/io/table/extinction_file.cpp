@@ -22,23 +22,17 @@ constexpr ExtinctionColumn extinction_columns[] = {
 
 Result<void> read_column(const TextTable &table, const ExtinctionColumn &one,
                          const std::string &file, MeasuredExtinction &out) {
-  const auto found = std::ranges::find(table.columns, one.name);
-  if (found == table.columns.end())
+  const auto column = column_named(table, one.name);
+  if (!column)
     return fail(ErrorCode::BadInput,
                 fmt::format("extinction without the column \"{}\"; a line of the names "
                             "wavelength_nm and k_mag above the numbers was expected",
                             one.name),
                 {file});
-  const auto column = static_cast<std::size_t>(found - table.columns.begin());
+  const std::string what = fmt::format("{} to {}{}", one.low, one.high, one.hint);
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const std::string_view cell = table.cell(row, column);
-    const auto value = parse_number(cell);
-    if (!value || !(*value >= one.low && *value <= one.high))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} = \"{}\"; {} to {}{} was expected", one.name, printable(cell),
-                              one.low, one.high, one.hint),
-                  {file, table.lines[row]});
-    (out.*one.values).push_back(*value);
+    UMOV_ASSIGN(value, number_in(table, row, *column, one.low, one.high, what, file));
+    (out.*one.values).push_back(value);
   }
   return {};
 }

@@ -11,26 +11,7 @@
 namespace umov {
 namespace {
 
-/// Where a column stands; empty without it.
-std::optional<std::size_t> column_named(const TextTable &table, const char *name) {
-  const auto at = std::ranges::find(table.columns, name);
-  if (at == table.columns.end())
-    return std::nullopt;
-  return static_cast<std::size_t>(at - table.columns.begin());
-}
-
-Result<double> number_in(const TextTable &table, std::size_t row, std::size_t column, double low,
-                         const char *what, const std::string &file) {
-  const std::string_view cell = table.cell(row, column);
-  const auto value = parse_number(cell);
-  constexpr double most = 1e15;
-  if (!value || !(*value >= low && *value <= most))
-    return fail(
-        ErrorCode::BadInput,
-        fmt::format("{} = \"{}\"; {} was expected", table.columns[column], printable(cell), what),
-        {file, table.lines[row]});
-  return *value;
-}
+constexpr double most = 1e15;
 
 } // namespace
 
@@ -48,12 +29,12 @@ Result<std::vector<PolarizerCount>> read_polarizer_text(std::string_view text,
   std::vector<PolarizerCount> out;
   for (std::size_t k = 0; k < table.rows(); ++k) {
     PolarizerCount one;
-    UMOV_ASSIGN(degrees, number_in(table, k, *angle, -1e4, "an angle in degrees", file));
-    UMOV_ASSIGN(found, number_in(table, k, *counts, 0, "a number of electrons", file));
+    UMOV_ASSIGN(degrees, number_in(table, k, *angle, -1e4, most, "an angle in degrees", file));
+    UMOV_ASSIGN(found, number_in(table, k, *counts, 0, most, "a number of electrons", file));
     one.angle_rad = degrees * pi / 180;
     one.counts = one.variance = found;
     if (variance) {
-      UMOV_ASSIGN(told, number_in(table, k, *variance, 0, "a variance in electron^2", file));
+      UMOV_ASSIGN(told, number_in(table, k, *variance, 0, most, "a variance in electron^2", file));
       one.variance = told;
     }
     if (!(one.variance > 0))

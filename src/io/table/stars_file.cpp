@@ -24,25 +24,18 @@ Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std:
   UMOV_ASSIGN(table, read_text_table(text, file));
   std::vector<FieldStar> out(table.rows());
   for (const Wanted &one : wanted) {
-    const auto found = std::find(table.columns.begin(), table.columns.end(), one.name);
-    if (found == table.columns.end())
+    const auto column = column_named(table, one.name);
+    if (!column)
       return fail(ErrorCode::BadInput,
                   fmt::format("stars without the column \"{}\"; ra_deg, dec_deg and mag were "
                               "expected",
                               one.name),
                   {file});
-    const auto column = static_cast<std::size_t>(found - table.columns.begin());
+    const std::string what = fmt::format("a number from {} to {}", one.low, one.high);
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      const std::string_view cell = table.cell(row, column);
-      const auto value = parse_number(cell);
-      if (!value || !(*value >= one.low && *value <= one.high))
-        return fail(
-            ErrorCode::BadInput,
-            fmt::format("{} = \"{}\"; a number from {} to {} was expected. Mend the line or take "
-                        "it out",
-                        one.name, printable(cell), one.low, one.high),
-            {file, table.lines[row]});
-      out[row].*one.value = *value;
+      UMOV_ASSIGN(value, number_in(table, row, *column, one.low, one.high, what, file,
+                                   ". Mend the line or take it out"));
+      out[row].*one.value = value;
     }
   }
   return out;

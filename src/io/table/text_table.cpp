@@ -91,6 +91,26 @@ std::size_t end_of_key(std::string_view text) {
 
 } // namespace
 
+std::optional<std::size_t> column_named(const TextTable &table, std::string_view name) {
+  const auto at = std::ranges::find(table.columns, name);
+  if (at == table.columns.end())
+    return std::nullopt;
+  return static_cast<std::size_t>(at - table.columns.begin());
+}
+
+Result<double> number_in(const TextTable &table, std::size_t row, std::size_t column, double low,
+                         double high, std::string_view what, const std::string &file,
+                         std::string_view advice) {
+  const std::string_view cell = table.cell(row, column);
+  const auto value = parse_number(cell);
+  if (!value || !(*value >= low && *value <= high))
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} = \"{}\"; {} was expected{}", table.columns[column],
+                            printable(cell), what, advice),
+                {file, table.lines[row]});
+  return *value;
+}
+
 void put_note(std::string_view words, std::map<std::string, std::string> &notes) {
   if (const std::size_t end = end_of_key(words); end != std::string_view::npos)
     notes[std::string(trimmed(words.substr(0, end)))] = trimmed(words.substr(end + 1));

@@ -41,6 +41,13 @@ private:
 /// row or a column that stands twice.
 Result<TextTable> read_text_table(std::string_view text, const std::string &file);
 
+/// Where a column stands; empty without it.
+std::optional<std::size_t> column_named(const TextTable &table, std::string_view name);
+/// The number in a cell. BadInput outside of a range: `what` was expected, and perhaps what to do.
+Result<double> number_in(const TextTable &table, std::size_t row, std::size_t column, double low,
+                         double high, std::string_view what, const std::string &file,
+                         std::string_view advice = {});
+
 /// Words of a header as people write them, "key: value", "key:value" or "key = value"; nothing
 /// where they are other words.
 void put_note(std::string_view words, std::map<std::string, std::string> &notes);
