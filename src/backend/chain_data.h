@@ -83,7 +83,8 @@ struct ChainNote {
   /// I times the standard deviation of a guess whether its ends are free, where the grid's
   /// directions around do not agree; both ways along a chain together.
   float doubt[lanes];
-  float carried[lanes]; ///< I itself
+  float carried[lanes];           ///< I itself
+  float most_doubt, most_carried; ///< of all lanes
 };
 struct ChainSums {
   View<ChainLight> bands;
@@ -93,12 +94,30 @@ struct ChainSums {
   std::size_t noted = 0;
   double doubt = 0, carried = 0; ///< sums over the notes
 };
-inline void keep_note(const ChainNote &note, ChainSums &sums) {
-  for (std::size_t k = 0; k < lanes; ++k) {
-    sums.doubt += static_cast<double>(note.doubt[k]);
-    sums.carried += static_cast<double>(note.carried[k]);
+/// The largest and the sum of 16 numbers, none below 0: four side by side.
+struct LaneSummary {
+  float most = 0, sum = 0;
+  explicit LaneSummary(const float (&of)[lanes]) {
+    constexpr std::size_t beside = 4;
+    float largest[beside]{}, sums[beside]{};
+    for (std::size_t k = 0; k < lanes; ++k) {
+      largest[k % beside] = of[k] > largest[k % beside] ? of[k] : largest[k % beside];
+      sums[k % beside] += of[k];
+    }
+    for (std::size_t k = 0; k < beside; ++k) {
+      most = largest[k] > most ? largest[k] : most;
+      sum += sums[k];
+    }
   }
-  sums.notes[sums.noted++] = note;
+};
+inline void keep_note(const ChainNote &note, ChainSums &sums) {
+  const LaneSummary doubt(note.doubt), carried(note.carried);
+  ChainNote &kept = sums.notes[sums.noted++];
+  kept = note;
+  kept.most_doubt = doubt.most;
+  kept.most_carried = carried.most;
+  sums.doubt += static_cast<double>(doubt.sum);
+  sums.carried += static_cast<double>(carried.sum);
 }
 inline constexpr std::size_t chain_bands_max = 8; ///< more go in parts
 

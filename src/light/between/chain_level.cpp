@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <umov/core/parallel.h>
-#include <umov/core/random.h>
 #include <umov/core/stop.h>
 
 namespace umov {
@@ -22,7 +21,6 @@ constexpr std::size_t blocks_at_a_time = 64;
 /// Directions this far below the horizon of an end are asked just above it, since interpolation
 /// between directions needs them [sine].
 constexpr double below_horizon = 0.12, above_horizon = 0.005;
-constexpr std::uint32_t doubt_stream = 0xC4B0;
 
 using LikeChains = std::array<std::vector<const Chain *>, replicates>;
 
@@ -118,8 +116,6 @@ ChainLevel::ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces,
                        std::size_t first, std::size_t rays_per_replicate, std::size_t count,
                        std::uint64_t seed, unsigned threads, const std::atomic<bool> *cancel)
     : surfaces_(surfaces), occluder_(occluder), bands_(bands) {
-  for (std::size_t r = 0; r < replicates; ++r)
-    shift_[r] = uniform4(seed, doubt_stream, first + r)[0];
   std::vector<ChainList> lists(replicates);
   parallel_for(replicates, threads, [&](std::size_t r) {
     lists[r] = rays.thinned(rays.draw(r, first, rays_per_replicate, cancel), r, first,
@@ -129,6 +125,7 @@ ChainLevel::ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces,
     return;
   const std::vector<Placed> placed = arrange(lists);
   fill(placed, lists);
+  set_thresholds(seed, first);
   trace(placed, grids, threads, cancel);
   view_ = {block_, matrix_, surfaces_.fast(), {blocks_, free_p_, free_q_}, bands_};
 }

@@ -64,18 +64,23 @@ private:
   /// As often as its grids say, with the doubt in that.
   void add_guessed(const OneChain &chain, const backend::ChainPose &pose, backend::ChainSums &sums,
                    backend::ChainNote &note) const;
-  /// A sample of the chains that carried, each with a chance of `per` times its number `of` a note:
-  /// calls chosen(run, block, lane, chance).
+  /// A sample of the chains that carried, each with a chance of `per` times its number `of` a note,
+  /// whose largest is `most`. Calls chosen(run, block, lane, chance).
   template <class F>
   void sample(const backend::ChainSums &sums, float (backend::ChainNote::*of)[backend::lanes],
-              double per, F &&chosen) const;
+              float backend::ChainNote::*most, double per, F &&chosen) const;
+  /// Above which chance the chains of a block are in the sample.
+  using Thresholds = std::array<float, replicates>;
+  [[nodiscard]] Thresholds thresholds(std::size_t block) const;
+  void set_thresholds(std::uint64_t seed, std::size_t first);
   /// Whether both ends of a chain are free: by the grids around, and by rays.
   [[nodiscard]] double guessed(const OneChain &chain, const backend::ChainPose &pose) const;
   [[nodiscard]] bool is_free(const OneChain &chain, const backend::ChainPose &pose) const;
 
   const ChainSurfaces &surfaces_;
   const Occluder &occluder_;
-  std::array<double, replicates> shift_{}; ///< of the thresholds by which chains are sampled
+  std::array<float, replicates> shift_{}; ///< of the thresholds by which chains are sampled
+  std::vector<float> least_threshold_;    ///< per block
   std::size_t bands_, chains_ = 0, blocks_ = 0;
   std::vector<backend::ChainBlock> block_;
   std::vector<backend::ChainMatrix> matrix_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <umov/core/random.h>
 
 namespace umov {
 namespace {
@@ -37,28 +38,44 @@ bool ChainLevel::is_free(const OneChain &one, const backend::ChainPose &pose) co
   return true;
 }
 
+void ChainLevel::set_thresholds(std::uint64_t seed, std::size_t first) {
+  constexpr std::uint32_t doubt_stream = 0xC4B0;
+  for (std::size_t r = 0; r < replicates; ++r)
+    shift_[r] = static_cast<float>(uniform4(seed, doubt_stream, first + r)[0]);
+  least_threshold_.resize(blocks_);
+  for (std::size_t block = 0; block < blocks_; ++block) {
+    const Thresholds all = thresholds(block);
+    least_threshold_[block] = *std::min_element(all.begin(), all.end());
+  }
+}
+
+ChainLevel::Thresholds ChainLevel::thresholds(std::size_t block) const {
+  const double step = golden * static_cast<double>(block);
+  const auto along = static_cast<float>(step - std::floor(step));
+  Thresholds out{};
+  for (std::size_t lane = 0; lane < replicates; ++lane) {
+    const float sum = along + shift_[lane];
+    out[lane] = sum < 1 ? sum : sum - 1;
+  }
+  return out;
+}
+
 template <class F>
 void ChainLevel::sample(const backend::ChainSums &sums,
-                        float (backend::ChainNote::*of)[backend::lanes], double per,
-                        F &&chosen) const {
-  std::array<float, replicates> shift{}, chance{}, threshold{};
-  std::copy(shift_.begin(), shift_.end(), shift.begin());
+                        float (backend::ChainNote::*of)[backend::lanes],
+                        float backend::ChainNote::*most, double per, F &&chosen) const {
   const auto scale = static_cast<float>(per);
   for (std::size_t n = 0; n < sums.noted; ++n) {
     const backend::ChainNote &note = sums.notes[n];
-    const double step = golden * note.block;
-    const auto along = static_cast<float>(step - std::floor(step));
-    unsigned chosen_ones = 0; // few: found without a branch
+    if (!(note.*most > 0) || scale * (note.*most) <= least_threshold_[note.block])
+      continue; // one block in ten is left, and its chains are few
+    const Thresholds threshold = thresholds(note.block);
     for (std::size_t lane = 0; lane < replicates; ++lane) {
       const float part = (note.*of)[lane]; // where all are faint, the scale may be infinite
-      chance[lane] = part > 0 ? std::min(1.0f, scale * part) : 0.0f;
-      const float sum = along + shift[lane];
-      threshold[lane] = sum < 1 ? sum : sum - 1;
-      chosen_ones |= static_cast<unsigned>(chance[lane] > threshold[lane]);
+      const float chance = part > 0 ? std::min(1.0f, scale * part) : 0.0f;
+      if (chance > threshold[lane])
+        chosen(runs_[run_of_[note.block]], note.block, lane, static_cast<double>(chance));
     }
-    for (std::size_t lane = 0; chosen_ones != 0 && lane < replicates; ++lane)
-      if (chance[lane] > threshold[lane])
-        chosen(runs_[run_of_[note.block]], note.block, lane, static_cast<double>(chance[lane]));
   }
 }
 
@@ -71,7 +88,8 @@ void ChainLevel::mend(const backend::ChainPose &pose, double error,
     return;
   const double most = std::max(least_sample, largest_part * static_cast<double>(chains_)),
                wanted = std::pow(doubt / (replicates * error), 2);
-  sample(sums, &backend::ChainNote::doubt, std::clamp(wanted, least_sample, most) / doubt,
+  sample(sums, &backend::ChainNote::doubt, &backend::ChainNote::most_doubt,
+         std::clamp(wanted, least_sample, most) / doubt,
          [&](const backend::ChainRun &run, std::size_t block, std::size_t lane, double chance) {
            for (const bool is_reversed : {false, true}) {
              const OneChain one{run, block, lane, is_reversed};
@@ -88,7 +106,8 @@ double ChainLevel::mistaken(const backend::ChainPose &pose, const backend::Chain
   std::vector<backend::ChainLight> light(bands_);
   backend::ChainSums wrong;
   wrong.bands = light;
-  sample(sums, &backend::ChainNote::carried, asked / sums.carried,
+  sample(sums, &backend::ChainNote::carried, &backend::ChainNote::most_carried,
+         asked / sums.carried,
          [&](const backend::ChainRun &run, std::size_t block, std::size_t lane, double chance) {
            for (const bool is_reversed : {false, true}) {
              const OneChain one{run, block, lane, is_reversed};
