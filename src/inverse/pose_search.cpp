@@ -2,12 +2,12 @@
 
 #include "algebra/dense.h"
 #include "inverse/model_error.h"
+#include "inverse/pose_modes.h"
 #include "inverse/posterior.h"
 #include "inverse/some_epochs.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <umov/inverse/attitude_grid.h>
 
@@ -101,61 +101,6 @@ std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t 
   return out;
 }
 
-std::vector<double> covariance_of(const TurningFit &fit, double span_s) {
-  // No unknown is less certain than "anything", 0.8 rad either way.
-  constexpr double widest = 0.8;
-  const algebra::SymmetricEigen eigen = algebra::symmetric_eigen(fit.information);
-  const Eigen::VectorXd values = eigen.values.cwiseMax(1 / (widest * widest));
-  return inverse::out_of_steps(algebra::product(eigen.vectors * values.cwiseInverse().asDiagonal(),
-                                                eigen.vectors.transpose()),
-                               fit.turning, span_s);
-}
-
-double log_det(const PoseMode &mode) {
-  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(mode.covariance.size())));
-  return algebra::cholesky_root(Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n))
-      .diagonal()
-      .array()
-      .log()
-      .sum();
-}
-
-/// Fits, best first, that are one and the same peak, joined; those that hold less than e^-15 of the
-/// best left out; weights by Laplace's integral.
-std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_s) {
-  std::vector<PoseMode> out;
-  double best = 1e300;
-  for (const TurningFit &fit : fits)
-    best = std::min(best, fit.at.minus_2_log);
-  for (const TurningFit &fit : fits) {
-    if (!(fit.at.minus_2_log <= best + 30)) // nor what is no number
-      continue;
-    PoseMode mode{fit.turning,     covariance_of(fit, span_s), 0, fit.at.chi2, fit.at.scale,
-                  fit.is_converged};
-    const bool is_known = std::ranges::any_of(out, [&](const PoseMode &other) {
-      const inverse::Step apart = inverse::step_between(other.turning, mode.turning, 6, span_s);
-      const double near = std::max(1 * degree, 3 * std::min(other.sd_rad(), mode.sd_rad()));
-      // Another spin with the same attitude at second 0 is another mode.
-      const double turns = std::abs(norm(other.turning.rate_rad_s) - norm(mode.turning.rate_rad_s));
-      return apart.head(3).norm() < near && apart.tail(3).norm() < std::max(near, 0.2) &&
-             turns * span_s < 0.2;
-    });
-    if (is_known)
-      continue;
-    mode.weight = std::exp(-(fit.at.minus_2_log - best) / 2 + log_det(mode));
-    out.push_back(std::move(mode));
-    constexpr std::size_t most = 40;
-    if (out.size() == most)
-      break;
-  }
-  double sum = 0;
-  for (const PoseMode &mode : out)
-    sum += mode.weight;
-  for (PoseMode &mode : out)
-    mode.weight /= sum;
-  return out;
-}
-
 /// A few narrow peaks describe the posterior, and their samples bear it out.
 bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
   constexpr double widest = 10 * degree;
@@ -208,7 +153,7 @@ Result<Peaks> peaks_of(const CurveModel &model, const CurveLikelihood &likelihoo
   constexpr int rounds = 4;
   for (int round = 0;; ++round) {
     std::ranges::stable_sort(fits, {}, [](const TurningFit &f) { return f.at.minus_2_log; });
-    out.modes = modes_of(fits, inverse::span_of(model.curve()));
+    out.modes = inverse::modes_of(fits, inverse::span_of(model.curve()));
     out.samples = inverse::sample_modes(model, likelihood, out.modes, options);
     if (out.samples.draws.empty())
       return tl::unexpected(stopped());
