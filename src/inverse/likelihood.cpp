@@ -209,10 +209,10 @@ double CurveLikelihood::fill(const ModelLight &model, const Gains &gains, const 
   return chi2 + gains.prior_chi2;
 }
 
-Comparison CurveLikelihood::compare(const ModelLight &model) const {
+Comparison CurveLikelihood::compare(const ModelLight &model, std::span<const double> near) const {
   if (model.parts.empty())
     return compare_as_it_is(model);
-  const FittedLight fitted = fit_parts(model);
+  FittedLight fitted = fit_parts(model, near);
   Comparison out = compare_as_it_is({fitted.i, fitted.q, fitted.u, model.i_half_width});
   for (const double off : fitted.off) {
     out.chi2 += off * off;
@@ -220,6 +220,8 @@ Comparison CurveLikelihood::compare(const ModelLight &model) const {
     out.residuals.push_back(off);
   }
   out.minus_2_log += fitted.log_det;
+  if (fitted.is_at_rest)
+    out.off = std::move(fitted.off);
   return out;
 }
 

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 class PartFit {
 public:
   PartFit(const CurveLikelihood &likelihood, const ModelLight &model);
-  CurveLikelihood::FittedLight run();
+  CurveLikelihood::FittedLight run(std::span<const double> near);
 
 private:
   /// Part and whether it is its slope.
@@ -41,6 +41,7 @@ private:
   void jacobian();
   void eliminate(MatrixXd &normal) const;
   bool step(VectorXd &off);
+  bool settle(VectorXd &best);
 
   const CurveLikelihood &of_;
   const ModelLight &model_;
@@ -169,14 +170,16 @@ double PartFit::change(std::size_t unknown, std::size_t at) const {
 /// Puts residuals of the best gains; returns chi-square without the parts' priors.
 double PartFit::residuals() {
   sums_ = GainSums{std::vector<double>(of_.groups_, 0), std::vector<double>(of_.groups_, 0)};
-  for (std::size_t k = 0; k < linear_.size(); ++k) {
-    double light = linear_[k].light;
-    for (std::size_t p = 0; p < model_.parts.size(); ++p)
-      light += (factor_[p * cells_ + linear_[k].at] - 1) *
-               linear_parts_(static_cast<Index>(k), static_cast<Index>(p));
-    light_[k] = light;
-    sums_.add(linear_[k].group, root_[k] * root_[k], linear_[k].data, light);
+  for (std::size_t k = 0; k < linear_.size(); ++k)
+    light_[k] = linear_[k].light;
+  for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+    const double *const factor = &factor_[p * cells_];
+    const auto part = linear_parts_.col(static_cast<Index>(p));
+    for (std::size_t k = 0; k < linear_.size(); ++k)
+      light_[k] += (factor[linear_[k].at] - 1) * part[static_cast<Index>(k)];
   }
+  for (std::size_t k = 0; k < linear_.size(); ++k)
+    sums_.add(linear_[k].group, root_[k] * root_[k], linear_[k].data, light_[k]);
   gains_ = of_.gains_of(sums_);
   for (std::size_t k = 0; k < linear_.size(); ++k)
     residual_[static_cast<Index>(k)] =
@@ -278,9 +281,9 @@ bool PartFit::step(VectorXd &off) {
   return length < smallest;
 }
 
-CurveLikelihood::FittedLight PartFit::run() {
-  VectorXd off = VectorXd::Zero(static_cast<Index>(unknowns_.size()));
-  VectorXd best = off;
+/// Steps until they are next to nothing; false if they did not become so.
+bool PartFit::settle(VectorXd &best) {
+  VectorXd off = best;
   double least = 1e300;
   constexpr int rounds = 8;
   for (int round = 0; round < rounds && !unknowns_.empty(); ++round) {
@@ -288,7 +291,7 @@ CurveLikelihood::FittedLight PartFit::run() {
     const double objective = residuals() + off.squaredNorm();
     if (!(objective < least)) { // too far: half of the way
       if ((off - best).cwiseAbs().maxCoeff() < 1e-3)
-        break;
+        return false;
       off = (off + best) / 2;
       continue;
     }
@@ -298,19 +301,36 @@ CurveLikelihood::FittedLight PartFit::run() {
       residuals(); // gains go with what each number counts
     if (step(off)) {
       best = off;
-      break;
+      return true;
     }
   }
-  set(best);
-  return {i_, q_, u_, {best.data(), best.data() + best.size()}, log_det_};
+  return unknowns_.empty();
+}
+
+CurveLikelihood::FittedLight PartFit::run(std::span<const double> near) {
+  VectorXd off = VectorXd::Zero(static_cast<Index>(unknowns_.size()));
+  bool is_at_rest = true;
+  if (!near.empty() && near.size() == unknowns_.size()) {
+    std::ranges::copy(near, off.begin());
+    set(off);
+    residuals();
+    if (trust())
+      residuals();
+    step(off);
+  } else {
+    is_at_rest = settle(off);
+  }
+  set(off);
+  return {i_, q_, u_, {off.data(), off.data() + off.size()}, log_det_, is_at_rest};
 }
 
 } // namespace umov::inverse
 
 namespace umov {
 
-CurveLikelihood::FittedLight CurveLikelihood::fit_parts(const ModelLight &model) const {
-  return inverse::PartFit(*this, model).run();
+CurveLikelihood::FittedLight CurveLikelihood::fit_parts(const ModelLight &model,
+                                                        std::span<const double> near) const {
+  return inverse::PartFit(*this, model).run(near);
 }
 
 } // namespace umov

@@ -39,10 +39,13 @@ bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
   const auto free = static_cast<Eigen::Index>(plan.freedom);
   const double span = span_of(model.curve(), epochs), h = plan.difference_rad;
   std::vector<Turning> near;
+  std::vector<std::span<const double>> parts; // from which a whole fit would find the same again
   for (const Running *one : fits)
-    for (Eigen::Index p = 0; p < free; ++p)
+    for (Eigen::Index p = 0; p < free; ++p) {
       near.push_back(stepped(one->fit.turning, Step::Unit(free, p) * h, span));
-  const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true);
+      parts.emplace_back(one->fit.at.off);
+    }
+  const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true, parts);
   if (compared.empty() && !near.empty())
     return false;
   for (std::size_t k = 0; k < fits.size(); ++k) {
@@ -148,11 +151,12 @@ double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) 
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
                                     std::span<const Turning> turnings,
                                     std::span<const std::size_t> epochs, unsigned threads,
-                                    bool keeps_residuals) {
+                                    bool keeps_residuals,
+                                    std::span<const std::span<const double>> near) {
   std::vector<Comparison> out(turnings.size());
   const bool is_whole =
       model.for_each(turnings, epochs, threads, [&](std::size_t k, const ModelLight &light) {
-        out[k] = likelihood.compare(light);
+        out[k] = likelihood.compare(light, near.empty() ? std::span<const double>() : near[k]);
         if (!keeps_residuals)
           out[k].residuals = {};
       });

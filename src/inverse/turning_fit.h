@@ -54,10 +54,12 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
                                      std::vector<Turning> starts,
                                      std::span<const std::size_t> epochs, const FitPlan &plan);
 
-/// -2 ln likelihood of each turning; empty if it was stopped.
+/// -2 ln likelihood of each turning; empty if it was stopped. `near`: of each, the parts of one
+/// next to it (`CurveLikelihood::compare`), if there are any.
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
                                     std::span<const Turning> turnings,
                                     std::span<const std::size_t> epochs, unsigned threads,
-                                    bool keeps_residuals = false);
+                                    bool keeps_residuals = false,
+                                    std::span<const std::span<const double>> near = {});
 
 } // namespace umov::inverse

@@ -73,6 +73,9 @@ struct Comparison {
   double scale = 1; ///< observed over model
   /// Whitened: chi2 is the sum of their squares where there are no outliers.
   std::vector<double> residuals;
+  /// Of the parts of the model, as `CurveLikelihood::FittedLight` has them; empty: it has none, or
+  /// their fit did not come to rest.
+  std::vector<double> off;
 };
 
 /// Measured I, q and u with their errors, or the counts that they were reduced from, ready to be
@@ -84,16 +87,22 @@ public:
                   std::span<const std::size_t> epochs = {});
 
   /// Holds a model against the curve; its parts are fitted under their priors, and integrated over
-  /// by Laplace's rule.
-  [[nodiscard]] Comparison compare(const ModelLight &model) const;
+  /// by Laplace's rule. `near`: parts of a model that is next to this one; they then change to
+  /// first order in what is between the two, as derivatives ask for. Empty: they are fitted from
+  /// the parts as they are.
+  [[nodiscard]] Comparison compare(const ModelLight &model,
+                                   std::span<const double> near = {}) const;
   /// The light of a model with its parts as they fit best.
   struct FittedLight {
     std::vector<double> i, q, u;
     std::vector<double> off; ///< of each part its amount, then its slope [standard deviations]
     double log_det = 0;      ///< of what the data add to the priors of `off`
+    bool is_at_rest = true;
   };
   /// The light with its parts as they fit best, under their priors (docs/theory/inverse.md, 4b).
-  [[nodiscard]] FittedLight fit_parts(const ModelLight &model) const;
+  /// `near` as in `compare`.
+  [[nodiscard]] FittedLight fit_parts(const ModelLight &model,
+                                      std::span<const double> near = {}) const;
   /// Residuals that are wrong together: of one epoch and band.
   struct Place {
     std::size_t epoch = 0, band = 0;
