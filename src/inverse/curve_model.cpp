@@ -12,10 +12,37 @@ Quaternion attitude_at(const Turning &turning, double seconds) {
   return turned(turning.attitude, turning.rate_rad_s * seconds);
 }
 
+namespace {
+
+/// A turning as what it does to directions: one rotation for all epochs, and for each the turn
+/// about one axis since (Rodrigues). Searches ask for a hundred million of them.
+class Motion {
+public:
+  explicit Motion(const Turning &turning)
+      : begin_(rotation_from<Body, Gcrs>(turning.attitude)), rate_(norm(turning.rate_rad_s)),
+        axis_(rate_ > 0 ? turning.rate_rad_s * (1 / rate_) : Vec3<Body>{0, 0, 1}) {}
+  [[nodiscard]] Pose at(const ObservedEpoch &epoch) const {
+    const Vec3<Body> sun = begin_ * epoch.to_sun, observer = begin_ * epoch.to_observer;
+    if (!(rate_ > 0))
+      return {normalized(sun), normalized(observer), epoch.sun_radius_rad};
+    const double angle = rate_ * epoch.seconds, c = std::cos(angle), s = std::sin(angle);
+    // What stands among the stars turns the other way in the body.
+    const auto later = [&](const Vec3<Body> &v) {
+      return normalized(v * c - cross(axis_, v) * s + axis_ * (dot(axis_, v) * (1 - c)));
+    };
+    return {later(sun), later(observer), epoch.sun_radius_rad};
+  }
+
+private:
+  Rotation<Body, Gcrs> begin_;
+  double rate_;
+  Vec3<Body> axis_;
+};
+
+} // namespace
+
 Pose pose_at(const Turning &turning, const ObservedEpoch &epoch) {
-  const auto body = rotation_from<Body, Gcrs>(attitude_at(turning, epoch.seconds));
-  return {normalized(body * epoch.to_sun), normalized(body * epoch.to_observer),
-          epoch.sun_radius_rad};
+  return Motion(turning).at(epoch);
 }
 
 CurveModel::CurveModel(const ObservedCurve &curve, PoseLighting light,
@@ -92,8 +119,9 @@ bool CurveModel::for_each(std::span<const Turning> turnings, std::span<const std
     const std::size_t count = std::min(block, turnings.size() - begin);
     poses.resize(count * per);
     parallel_for(count, threads, [&](std::size_t k) {
+      const Motion motion(turnings[begin + k]);
       for (std::size_t e = 0; e < per; ++e)
-        poses[k * per + e] = pose_at(turnings[begin + k], curve_.epochs[epochs[e]]);
+        poses[k * per + e] = motion.at(curve_.epochs[epochs[e]]);
     });
     if (!light_(poses, table))
       return false;

@@ -79,6 +79,25 @@ TEST(TurningStep, AxesAmongTheStarsAndInTheBodyAreApart) {
   EXPECT_NEAR((norm(tilted.rate_rad_s) - norm(quick.rate_rad_s)) * span, 0.2, 1e-9);
 }
 
+/// Directions in the body, by the attitude at each time.
+TEST(Turning, PosesAreThoseOfTheAttitudeAtTheirTime) {
+  const Turning fixed{quick.attitude, {}};
+  for (const Turning &turning : {fixed, still, quick})
+    for (const double seconds : {-7.5, 0.0, 3.0, 911.0}) {
+      ObservedEpoch epoch;
+      epoch.seconds = seconds;
+      epoch.to_sun = normalized(Vec3<Gcrs>{.3, -.8, .2});
+      epoch.to_observer = normalized(Vec3<Gcrs>{-.1, .4, .9});
+      epoch.sun_radius_rad = 5e-3;
+      const auto body = rotation_from<Body, Gcrs>(attitude_at(turning, seconds));
+      const Pose pose = pose_at(turning, epoch);
+      // Rounding of a hundred radians.
+      EXPECT_LT(norm(pose.sun - body * epoch.to_sun), 1e-12);
+      EXPECT_LT(norm(pose.observer - body * epoch.to_observer), 1e-12);
+      EXPECT_EQ(pose.sun_radius_rad, 5e-3);
+    }
+}
+
 /// Derivatives of rotation vector and rate where a step has led to, by differences.
 Eigen::MatrixXd derivatives(const Turning &from, const Step &step) {
   const Turning at = inverse::stepped(from, step, span);
