@@ -9,6 +9,25 @@
 namespace umov {
 using inverse::DirectionGrid;
 
+namespace {
+
+constexpr std::size_t lanes = 4; // numbers that a processor multiplies at once, whichever it is
+
+/// Sum of `lanes` numbers each of the sixteen pairs about a pose, by their weights.
+void add_corners(const float *light, std::size_t stride, std::size_t nodes,
+                 const DirectionGrid::Corner &sun, const DirectionGrid::Corner &observer,
+                 float (&sum)[lanes]) {
+  for (std::size_t s = 0; s < 4; ++s)
+    for (std::size_t o = 0; o < 4; ++o) {
+      const float w = sun.weight[s] * observer.weight[o];
+      const float *const at = light + (sun.node[s] * nodes + observer.node[o]) * stride;
+      for (std::size_t l = 0; l < lanes; ++l)
+        sum[l] += w * at[l];
+    }
+}
+
+} // namespace
+
 std::shared_ptr<const DirectionTable> DirectionTable::make(const PoseLighting &light,
                                                            std::size_t cells, double sun_radius_rad,
                                                            unsigned threads) {
@@ -31,7 +50,8 @@ std::shared_ptr<const DirectionTable> DirectionTable::make(const PoseLighting &l
     if (!light(poses, lit))
       return nullptr;
     out->bands_ = lit.bands;
-    out->light_.resize(nodes * nodes * lit.bands * 2);
+    out->stride_ = (lit.bands * 2 + lanes - 1) / lanes * lanes;
+    out->light_.resize(nodes * nodes * out->stride_);
     std::vector<std::size_t> first(end - begin + 1, 0);
     for (std::size_t s = begin; s < end; ++s)
       first[s - begin + 1] = first[s - begin] + nodes - s;
@@ -44,12 +64,30 @@ std::shared_ptr<const DirectionTable> DirectionTable::make(const PoseLighting &l
           const float i = is_lit ? static_cast<float>(lit.i[from]) : 0;
           const float q = is_lit ? static_cast<float>(lit.q[from]) : 0;
           for (const std::size_t pair : {s * nodes + o, o * nodes + s}) {
-            out->light_[(pair * lit.bands + b) * 2] = i;
-            out->light_[(pair * lit.bands + b) * 2 + 1] = q;
+            out->light_[pair * out->stride_ + b * 2] = i;
+            out->light_[pair * out->stride_ + b * 2 + 1] = q;
           }
         }
     });
   }
+  return out;
+}
+
+std::shared_ptr<const DirectionTable> DirectionTable::halved() const {
+  auto out = std::make_shared<DirectionTable>();
+  out->cells_ = cells_ / 2;
+  out->bands_ = bands_;
+  out->stride_ = stride_;
+  const DirectionGrid few{out->cells_}, all{cells_};
+  const auto in_all = [&](std::size_t node) {
+    return 2 * (node / (few.cells + 1) * (all.cells + 1) + node % (few.cells + 1));
+  };
+  for (std::size_t sun = 0; sun < few.nodes(); ++sun)
+    for (std::size_t observer = 0; observer < few.nodes(); ++observer) {
+      const auto pair = (in_all(sun) * all.nodes() + in_all(observer)) * stride_;
+      const auto from = light_.begin() + static_cast<std::ptrdiff_t>(pair);
+      out->light_.insert(out->light_.end(), from, from + static_cast<std::ptrdiff_t>(stride_));
+    }
   return out;
 }
 
@@ -67,18 +105,13 @@ PoseLighting DirectionTable::lighting(std::shared_ptr<const DirectionTable> tabl
       for (std::size_t k = c * chunk; k < std::min(poses.size(), (c + 1) * chunk); ++k) {
         const DirectionGrid::Corner sun = grid.corner(poses[k].sun);
         const DirectionGrid::Corner observer = grid.corner(poses[k].observer);
-        for (std::size_t b = 0; b < bands; ++b) {
-          float i = 0, q = 0;
-          for (std::size_t s = 0; s < 4; ++s)
-            for (std::size_t o = 0; o < 4; ++o) {
-              const float w = sun.weight[s] * observer.weight[o];
-              const float *const at =
-                  &table->light_[((sun.node[s] * nodes + observer.node[o]) * bands + b) * 2];
-              i += w * at[0];
-              q += w * at[1];
-            }
-          out.i[k * bands + b] = static_cast<double>(i);
-          out.q[k * bands + b] = static_cast<double>(q);
+        for (std::size_t first = 0; first < table->stride_; first += lanes) {
+          float sum[lanes]{};
+          add_corners(table->light_.data() + first, table->stride_, nodes, sun, observer, sum);
+          for (std::size_t l = 0; l < lanes && first + l < 2 * bands; ++l) {
+            auto &column = l % 2 == 0 ? out.i : out.q;
+            column[k * bands + (first + l) / 2] = static_cast<double>(sum[l]);
+          }
         }
       }
     });

@@ -368,49 +368,75 @@ Result<std::vector<TurningFit>> settled_fits(const CurveModel &model, std::vecto
 
 namespace {
 
-/// Fits of fixed attitudes that have come to rest, and the grid that they were found on.
-struct FoundPoses {
-  std::vector<Turning> judged;  ///< best of the grid first
-  std::vector<TurningFit> fits; ///< best first
+/// Few that stand for all epochs where many attitudes are fitted.
+std::vector<std::size_t> epochs_of_first_steps(const CurveModel &model) {
+  return inverse::some_epochs(model.curve().epochs.size(), 60);
+}
+
+/// The search is `done` of these.
+void tell_refined(const SearchOptions &options, std::size_t done) {
+  constexpr std::size_t steps = 3;
+  if (options.progress)
+    options.progress("refine", done, steps);
+}
+
+/// Fixed attitudes that are worth a fit, and the grid that they were found on; best first.
+struct Places {
+  std::vector<Turning> judged, best;
 };
 
-/// `hopeless`: chi-square from which on the first fits are left as they are.
-Result<FoundPoses> find_poses(const SearchModels &models, FoundErrors &errors,
-                              const SearchOptions &options,
-                              double hopeless = std::numeric_limits<double>::infinity()) {
+Result<Places> find_places(const SearchModels &models, FoundErrors &errors,
+                           const SearchOptions &options) {
   const auto &[model, first, quick] = models;
   if (errors.likelihood().measurements() == 0)
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
   UMOV_ASSIGN(left, search_grid(quick, options));
-  std::vector<Turning> from = spread_out(left, options.starts, 5 * degree);
   const CurveLikelihood rough(model.curve(), tempered(options.errors));
-  const auto some = inverse::some_epochs(model.curve().epochs.size(), 60);
   // Many at first, and few of those that stay apart: a basin of one glint is a long valley, and
   // there is one for each flat that could have mirrored the Sun.
   const inverse::FitPlan tempered_steps{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};
+  constexpr std::size_t most = 80;
+  tell_refined(options, 0);
+  const auto fits =
+      inverse::fit_turnings(quick, rough, spread_out(left, options.starts, 5 * degree),
+                            epochs_of_first_steps(model), tempered_steps);
+  Places out{std::move(left), best_of(fits, most)};
+  bool has_changed = false;
+  if (fits.empty() || !errors.ask(out.best, has_changed))
+    return tl::unexpected(stopped());
+  return std::move(out);
+}
+
+/// Fits that have come to rest, best first.
+Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
+                                           const std::vector<Turning> &places, FoundErrors &errors,
+                                           const SearchOptions &options) {
   const inverse::FitPlan first_steps{Freedom::Attitude, 12, 0, 0, 1e-3, options.threads};
-  constexpr std::size_t after_tempered = 80, after_first = 24, steps = 3;
-  const auto tell = [&](std::size_t done) {
-    if (options.progress)
-      options.progress("refine", done, steps);
-  };
-  tell(0);
-  auto fits = inverse::fit_turnings(quick, rough, from, some, tempered_steps);
-  from = best_of(fits, after_tempered);
+  constexpr std::size_t most = 24;
+  tell_refined(options, 1);
+  const auto fits =
+      inverse::fit_turnings(models.first, errors.likelihood(), places, {}, first_steps);
+  const auto from = best_of(fits, most);
   bool has_changed = false;
   if (fits.empty() || !errors.ask(from, has_changed))
     return tl::unexpected(stopped());
-  tell(1);
-  fits = inverse::fit_turnings(first, errors.likelihood(), from, {}, first_steps);
-  from = best_of(fits, after_first);
-  if (fits.empty() || !errors.ask(from, has_changed))
-    return tl::unexpected(stopped());
-  if (fits.front().at.chi2 > hopeless)
-    return FoundPoses{std::move(left), std::move(fits)};
-  tell(2);
-  UMOV_ASSIGN(last, settled_fits(model, from, Freedom::Attitude, errors, options));
-  return FoundPoses{std::move(left), std::move(last)};
+  tell_refined(options, 2);
+  return settled_fits(models.last, from, Freedom::Attitude, errors, options);
+}
+
+/// Chi-square of the best of some places after a few steps on few epochs, as of all epochs; less
+/// than 0 if it was stopped.
+double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> &places,
+                            const CurveLikelihood &likelihood, unsigned threads) {
+  const auto some = epochs_of_first_steps(model);
+  const CurveLikelihood few(model.curve(), likelihood.errors(), some);
+  const auto fits =
+      inverse::fit_turnings(model, few, places, some, {Freedom::Attitude, 3, 0, 0, 1e-3, threads});
+  if (fits.empty())
+    return -1;
+  return fits.front().at.chi2 * static_cast<double>(likelihood.measurements()) /
+         static_cast<double>(std::max<std::size_t>(few.measurements(), 1));
 }
 
 } // namespace
@@ -418,9 +444,10 @@ Result<FoundPoses> find_poses(const SearchModels &models, FoundErrors &errors,
 Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options) {
   const auto &[model, first, quick] = models;
   FoundErrors errors(model, options);
-  UMOV_ASSIGN(found, find_poses(models, errors, options));
-  UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), found.fits, Freedom::Attitude,
-                             {found.judged, options.grid}, options));
+  UMOV_ASSIGN(places, find_places(models, errors, options));
+  UMOV_ASSIGN(fits, fit_places(models, places.best, errors, options));
+  UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), fits, Freedom::Attitude,
+                             {places.judged, options.grid}, options));
   errors.tell(out);
   if (&quick != &first && &quick != &model)
     out.poses_lit += quick.poses_lit();
@@ -429,22 +456,51 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
 }
 
 Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options) {
-  // Ten standard deviations in each measurement: no last step makes an explanation of that.
+  // Ten standard deviations in each measurement: no further step makes an explanation of that.
   constexpr double far = 100;
   FoundErrors errors(models.last, options);
-  UMOV_ASSIGN(found, find_poses(models, errors, options,
-                                far * static_cast<double>(errors.likelihood().measurements())));
-  return found.fits.front().at.chi2;
+  UMOV_ASSIGN(places, find_places(models, errors, options));
+  const double seen =
+      chi2_after_few_steps(models.first, places.best, errors.likelihood(), options.threads);
+  if (seen < 0)
+    return tl::unexpected(stopped());
+  if (seen > far * static_cast<double>(errors.likelihood().measurements()))
+    return seen;
+  UMOV_ASSIGN(fits, fit_places(models, places.best, errors, options));
+  return fits.front().at.chi2;
 }
 
-Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,
-                               const SearchOptions &options) {
+namespace {
+
+/// Starts of spins by quick light on few epochs, of those that may come to be the best.
+std::vector<Turning> likely_spins(const CurveModel &first, const CurveErrors &errors,
+                                  std::vector<Turning> starts, unsigned threads) {
+  constexpr std::size_t least = 6, most = 24;
+  constexpr double far = 60; // chi-square of few epochs
+  const auto some = epochs_of_first_steps(first);
+  const CurveLikelihood few(first.curve(), errors, some);
+  const auto fits =
+      inverse::fit_turnings(first, few, std::move(starts), some,
+                            {Freedom::AttitudeAndRate, 12, 4, most, 1e-3, threads, true});
+  std::size_t count = std::min(fits.size(), least);
+  while (count < std::min(fits.size(), most) && fits[count].at.chi2 < fits[0].at.chi2 + far)
+    ++count;
+  return best_of(fits, count);
+}
+
+} // namespace
+
+Result<PoseAnswer> refine_spin(const CurveModel &model, const CurveModel &first,
+                               std::span<const Turning> starts, const SearchOptions &options) {
   FoundErrors errors(model, options);
   bool has_changed = false;
   if (!errors.ask(starts, has_changed))
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(fits, settled_fits(model, {starts.begin(), starts.end()}, Freedom::AttitudeAndRate,
-                                 errors, options));
+  const auto likely = likely_spins(first, errors.likelihood().errors(),
+                                   {starts.begin(), starts.end()}, options.threads);
+  if (likely.empty() || !errors.ask(likely, has_changed))
+    return tl::unexpected(stopped());
+  UMOV_ASSIGN(fits, settled_fits(model, likely, Freedom::AttitudeAndRate, errors, options));
   UMOV_ASSIGN(out, answer_of(model, model, errors.likelihood(), fits, Freedom::AttitudeAndRate, {},
                              options));
   errors.tell(out);

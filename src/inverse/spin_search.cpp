@@ -65,6 +65,14 @@ void keep_best(std::vector<Candidate> &all, std::size_t count) {
   all.resize(std::min(all.size(), count));
 }
 
+std::vector<Turning> turnings_of(const std::vector<Candidate> &candidates) {
+  std::vector<Turning> out;
+  out.reserve(candidates.size());
+  for (const Candidate &c : candidates)
+    out.push_back(c.turning);
+  return out;
+}
+
 /// The same attitude and the same spin, nearly: over `reach_s` the bodies do not part by more.
 bool is_near(const Turning &a, const Turning &b, double angle, double reach_s) {
   const Vec3<Body> u = normalized(a.rate_rad_s), v = normalized(b.rate_rad_s);
@@ -109,48 +117,64 @@ double middle_of_longest(const std::vector<ObservedEpoch> &epochs, double pause_
 /// Search of one period, on a curve whose second 0 is its middle.
 class PeriodSearch {
 public:
-  PeriodSearch(const CurveModel &coarse, const SpinRequest &request, const SearchOptions &options,
-               double period_s)
-      : coarse_(coarse), request_(request), options_(options), period_s_(period_s) {}
+  PeriodSearch(const CurveModel &coarse, const CurveModel &coarsest, const SpinRequest &request,
+               const SearchOptions &options, double period_s)
+      : coarse_(coarse), coarsest_(coarsest), request_(request), options_(options),
+        period_s_(period_s) {}
 
   /// A few starts for the last fits; none if it was stopped.
   std::vector<Candidate> run();
 
 private:
-  bool look_at_grid(std::vector<Candidate> &found);
+  bool judge(const CurveModel &model, std::size_t epochs_max, const std::vector<Turning> &turnings,
+             std::vector<Candidate> &found) const;
+  bool look_at_grid(std::vector<Candidate> &found) const;
   bool lengthen(std::vector<Candidate> &found);
   [[nodiscard]] std::optional<double> next_reach(double told_s) const;
   [[nodiscard]] bool is_pause(double told_s, double next_s) const;
   void fan_out(std::span<const TurningFit> fits, double span_s, double next_s,
                std::size_t measurements, std::vector<Candidate> &found) const;
 
-  const CurveModel &coarse_;
+  const CurveModel &coarse_, &coarsest_;
   const SpinRequest &request_;
   const SearchOptions &options_;
   double period_s_;
 };
 
-bool PeriodSearch::look_at_grid(std::vector<Candidate> &found) {
-  const auto &curve = coarse_.curve();
-  constexpr std::size_t epochs_max = 16, kept = 1500;
-  const auto epochs = within(curve, 1.25 * period_s_, epochs_max);
-  const CurveLikelihood rough(curve, tempered(options_.errors, 0.25), epochs);
+bool PeriodSearch::judge(const CurveModel &model, std::size_t epochs_max,
+                         const std::vector<Turning> &turnings,
+                         std::vector<Candidate> &found) const {
+  const auto epochs = within(coarse_.curve(), 1.25 * period_s_, epochs_max);
+  const CurveLikelihood rough(coarse_.curve(), tempered(options_.errors, 0.25), epochs);
+  const auto compared = inverse::compare_all(model, rough, turnings, epochs, options_.threads);
+  for (std::size_t k = 0; k < compared.size(); ++k)
+    found.push_back({turnings[k], compared[k].chi2});
+  return !compared.empty();
+}
+
+bool PeriodSearch::look_at_grid(std::vector<Candidate> &found) const {
+  constexpr std::size_t few = 8, many = 16;
+  constexpr std::size_t after_few = 150'000, after_many = 60'000, kept = 1500;
   const auto attitudes = attitude_grid(request_.attitudes);
   const double rate = 2 * pi / period_s_;
   for (const Vec3<Body> &axis : axes_of(request_)) {
     std::vector<Turning> tried;
     for (const Quaternion &q : attitudes)
       tried.push_back({q, axis * rate});
-    const auto compared = inverse::compare_all(coarse_, rough, tried, epochs, options_.threads);
-    if (compared.empty())
+    if (!judge(coarsest_, few, tried, found))
       return false;
-    for (std::size_t k = 0; k < tried.size(); ++k)
-      found.push_back({tried[k], compared[k].chi2});
-    if (found.size() > 100'000)
-      keep_best(found, kept);
+    if (found.size() > 2 * after_few)
+      keep_best(found, after_few);
   }
-  keep_best(found, kept);
-  return true;
+  keep_best(found, after_few);
+  const auto again = [&](const CurveModel &model, std::size_t left) {
+    const std::vector<Turning> tried = turnings_of(found);
+    found.clear();
+    const bool is_whole = judge(model, many, tried, found);
+    keep_best(found, left);
+    return is_whole;
+  };
+  return again(coarsest_, after_many) && again(coarse_, kept);
 }
 
 /// As far as the next stretch goes: twice as far, or, over a pause, two and a half turns into what
@@ -306,12 +330,15 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
   for (ObservedEpoch &epoch : middle.epochs)
     epoch.seconds -= shift;
   const CurveModel model(middle, light, column, request.parts);
-  const CurveModel coarse(middle, request.coarse ? request.coarse : light, column);
+  const CurveModel first(middle, request.first ? request.first : light, column, request.parts);
+  const PoseLighting &blurred = request.coarse ? request.coarse : light;
+  const CurveModel coarse(middle, blurred, column);
+  const CurveModel coarsest(middle, request.coarsest ? request.coarsest : blurred, column);
   std::vector<Candidate> found_of_all;
   for (std::size_t k = 0; k < request.periods_s.size(); ++k) {
     if (options.progress)
       options.progress("spin", k, request.periods_s.size() + 1);
-    const auto found = PeriodSearch(coarse, request, options, request.periods_s[k]).run();
+    const auto found = PeriodSearch(coarse, coarsest, request, options, request.periods_s[k]).run();
     if (found.empty())
       return tl::unexpected(stopped());
     found_of_all.insert(found_of_all.end(), found.begin(), found.end());
@@ -319,10 +346,7 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
   // All were compared at the same epochs: the last fits, by the light itself, are for the best.
   constexpr std::size_t most = 24;
   keep_best(found_of_all, most);
-  std::vector<Turning> starts;
-  for (const Candidate &c : found_of_all)
-    starts.push_back(c.turning);
-  UMOV_ASSIGN(answer, refine_spin(model, starts, options));
+  UMOV_ASSIGN(answer, refine_spin(model, first, turnings_of(found_of_all), options));
   for (PoseMode &mode : answer.modes)
     move(mode, -shift);
   for (PoseSample &sample : answer.samples)

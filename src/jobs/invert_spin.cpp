@@ -83,11 +83,17 @@ Table periods_table(const SpinAnswer &answer, const std::vector<double> &tried) 
   return out;
 }
 
-/// What makes a search for a spin quick: light of all pairs of directions, once.
-PoseLighting coarse_light(const PoseLighting &light, const ObservedCurve &curve, unsigned threads) {
+/// What makes a search for a spin quick: light of all pairs of directions, once. False if it was
+/// stopped.
+bool put_coarse_light(const PoseLighting &light, const ObservedCurve &curve, unsigned threads,
+                      SpinRequest &out) {
   constexpr std::size_t cells = 36; // 5 deg; 1.9 million pairs
   auto table = DirectionTable::make(light, cells, curve.epochs.front().sun_radius_rad, threads);
-  return table ? DirectionTable::lighting(std::move(table), threads) : PoseLighting();
+  if (!table)
+    return false;
+  out.coarsest = DirectionTable::lighting(table->halved(), threads);
+  out.coarse = DirectionTable::lighting(std::move(table), threads);
+  return true;
 }
 
 /// `is_doubted`: the period itself, not the attitude alone.
@@ -155,10 +161,10 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   asked.periods_s = periods;
   asked.axis = axis_of(spin.axis);
   asked.parts = parts_of(ready);
-  asked.coarse =
-      coarse_light(quick_lighting(ready, options.threads, monitor), curve, options.threads);
-  if (!asked.coarse)
+  if (!put_coarse_light(quick_lighting(ready, options.threads, monitor), curve, options.threads,
+                        asked))
     return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+  asked.first = first_lighting(ready, options.threads, monitor);
   const auto searched = searched_lighting(ready, options.threads, monitor);
   UMOV_ASSIGN(answer, search_spin(curve, searched, ready.observed.column, asked,
                                   search_options(scenario, request, options, monitor)));
@@ -169,8 +175,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   UMOV_TRY(judge_direct_light(scenario, request, ready, curve, answer.pose, options, monitor,
                               judgement));
   const CurveModel coarse(curve, asked.coarse, ready.observed.column);
-  const CurveModel first(curve, first_lighting(ready, options.threads, monitor),
-                         ready.observed.column, asked.parts);
+  const CurveModel first(curve, asked.first, ready.observed.column, asked.parts);
   UMOV_ASSIGN(at_rest, chi2_at_rest({model, first, coarse}, answer.pose.errors,
                                     search_options(scenario, request, options, monitor)));
   constexpr double sure = 0.95;

@@ -92,9 +92,9 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
 Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options);
 
 /// `search_pose` around given turnings with their rate free too: the last step of a search for a
-/// spin.
-Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,
-                               const SearchOptions &options);
+/// spin. `first`: quicker light of the same parts, which tells the starts that may become the best.
+Result<PoseAnswer> refine_spin(const CurveModel &model, const CurveModel &first,
+                               std::span<const Turning> starts, const SearchOptions &options);
 
 /// The attitude lies in the union of balls.
 bool is_in(std::span<const AttitudeBall> set, Quaternion attitude);

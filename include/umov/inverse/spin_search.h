@@ -13,6 +13,10 @@ struct SpinRequest {
   /// Coarse light for the first steps (DirectionTable::lighting); empty: the light itself, which
   /// then has no parts.
   PoseLighting coarse = {};
+  /// Coarser still, which tells the turnings of the first grid that are worth `coarse`; empty: all.
+  PoseLighting coarsest = {};
+  /// Quicker light for what comes between, of the same parts; empty: the light itself.
+  PoseLighting first = {};
   std::vector<PartKind> parts = {};         ///< of the light itself, of which `coarse` has none
   std::size_t attitudes = 6000, axes = 150; ///< of the first grid: spacing 14 and 17 deg
 };
