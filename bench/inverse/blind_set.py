@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""A seeded blind set through the whole observing chain: poses and spins of objects in random attitudes, recorded by
+"""A seeded blind set through the whole observing chain: poses, spins and identities of objects in random attitudes, recorded by
 `umov observe` (a finer mesh than the fitted one, air, sky, noise of a polarization camera whose filters take turns), reduced by
-`umov reduce`, and asked of `umov invert pose` and `invert spin`. The truth stays in this program.
+`umov reduce`, and asked of `umov invert pose`, `invert spin` and `identify`. The truth stays in this program.
 Prints a line a curve; writes the table, with what made it in its header.
 
-usage: blind_set.py [--counts] [--each 20] [--seed 60] [--kinds pose,spin] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
-                    [options of umov invert]
+usage: blind_set.py [--counts] [--each 20] [--seed 60] [--kinds pose,spin,identity] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
+                    [options of umov invert and identify]
+--objects: of which poses and spins are asked; identities are of those of the library: cubesat, agena, box-wing, hst, each with its own light.
 --snr: of I, in the median of the lit sets: the telescope is made as large as that takes, its focal ratio kept. Without it: 28 cm.
 --counts: `umov invert` has the counts themselves, not what `umov reduce` made of them.
 --work: what was observed is kept there and taken again by the next run."""
@@ -27,13 +28,14 @@ bands = ["nm:425", "nm:550", "nm:650"]
 exposure_s = {exposure}
 cadence_s = {cadence}
 """
+LIBRARY = ("cubesat", "agena", "box-wing", "hst")
 TELESCOPE = blind.ROOT / "data/instruments/c11_imx250.toml"
 
 
 class Chain:
     def __init__(self, o, work):
         self.o, self.work = o, work
-        for shape in o.objects.split(","):
+        for shape in {*o.objects.split(","), *(LIBRARY if "identity" in o.kinds else ())}:
             for words, kind in zip(blind.MESH[shape], ("fit", "true")):
                 path = work / f"{shape}_{kind}.obj"
                 if not path.exists():
@@ -127,11 +129,34 @@ def spin(chain, name, rng, seed, keep, period=40.0):
     return answer["verdict"], off[0], off[0] < 2, min(off) < 2, answer["share_of_so3"], seconds
 
 
+def identity(chain, name, rng, seed, keep):
+    scenarios = [chain.work / f"{one}.toml" for one in LIBRARY]
+    if not (chain.work / "lib").exists():
+        for one, path in zip(LIBRARY, scenarios):
+            path.write_text(chain.scenario(one, "fit", blind.inertial([1, 0, 0, 0]), 4, "masks", 1))
+        blind.run(chain.o.umov, "library", "build", *scenarios, "-o", chain.work / "lib", "-q")
+    chain.observe(name, blind.inertial(blind.random_attitude(rng)), 4, seed, keep)
+    answer, seconds = chain.ask("identify", chain.work / "data.csv", "--scenario", chain.work / "fit.toml", "--library", chain.work / "lib",
+                                "--objects", *scenarios)
+    if answer["verdict"] == "refused":
+        return "refused", float("nan"), False, False, 1.0, seconds
+    shares = sorted([(c["probability"], c["name"]) for c in answer["searched"]] + [(answer["none_of_these"], "none of these")], reverse=True)
+    named, total = [], 0.0
+    for share, who in shares:
+        if total < 0.95:
+            named.append(who)
+        total += share
+    return answer["verdict"], dict((who, share) for share, who in shares).get(name, 0.0), shares[0][1] == name, name in named, len(named), seconds
+
+
+ASKED = {"pose": pose, "spin": spin, "identity": identity}
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--each", type=int, default=20)
     parser.add_argument("--seed", type=int, default=60)
-    parser.add_argument("--kinds", default="pose,spin")
+    parser.add_argument("--kinds", default="pose,spin,identity")
     parser.add_argument("--objects", default="cubesat,agena")
     parser.add_argument("--snr", type=float, default=0)
     parser.add_argument("--counts", action="store_true")
@@ -149,9 +174,9 @@ def main():
             if o.only not in (None, trial):
                 continue
             rng = random.Random(f"{o.seed} {kind} {trial}")
-            name = names[trial % len(names)]
+            name = LIBRARY[trial % len(LIBRARY)] if kind == "identity" else names[trial % len(names)]
             keep = chain.kept(f"{kind}_{name}_{o.seed}_{trial}_{o.snr:g}.csv", o.counts)
-            verdict, value, is_right, is_covered, share, seconds = {"pose": pose, "spin": spin}[kind](chain, name, rng, o.seed + trial, keep)
+            verdict, value, is_right, is_covered, share, seconds = ASKED[kind](chain, name, rng, o.seed + trial, keep)
             done += 1
             right += is_right
             covered += is_covered
@@ -162,7 +187,8 @@ def main():
     if o.output:
         version = subprocess.run([str(o.umov), "--version"], capture_output=True, text=True).stdout.strip()
         head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds} --objects {o.objects} --snr {o.snr:g}{' --counts' if o.counts else ''}; {version}",
-                "# value: error of the best attitude [deg], of the best axis [deg]",
+                "# value: error of the best attitude [deg], of the best axis [deg], probability of the true object",
+                "# share: of all attitudes, that the set takes; objects that 95 % of the probability need",
                 "kind,trial,object,verdict,value,right,in_set,share,seconds"]
         o.output.write_text("\n".join(head + lines) + "\n")
 
