@@ -20,6 +20,10 @@ jobs::Monitor JobConsole::monitor(bool with_remarks) {
     }
     bar_->update(done, total);
   };
+  out.left = [this](double seconds) {
+    if (bar_)
+      bar_->expect(seconds);
+  };
   if (with_remarks)
     out.remark = [this](const std::string &text) { note(common_, text); };
   return out;

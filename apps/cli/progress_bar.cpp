@@ -1,5 +1,6 @@
 #include "progress_bar.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,6 +12,11 @@ void draw(const std::string &line) {
   const std::string text = "\r\033[K" + line;
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
+}
+
+std::string time_left(double seconds) {
+  return seconds < 100 ? fmt::format("{:.0f} s left", seconds)
+                       : fmt::format("{:.0f} min left", seconds / 60);
 }
 
 double seconds_of(std::chrono::steady_clock::duration time) {
@@ -47,6 +53,11 @@ void ProgressBar::update(std::size_t done, std::size_t total) {
   }
 }
 
+void ProgressBar::expect(double seconds) {
+  const std::lock_guard guard(mutex_);
+  expected_ = {Clock::now(), seconds};
+}
+
 void ProgressBar::keep_drawing(const std::stop_token &stop) {
   std::unique_lock lock(mutex_);
   // Short jobs are over before the first line.
@@ -70,6 +81,9 @@ std::string ProgressBar::line() const {
 /// Time left at the rate of the last 20 s; nothing is promised in the first seconds, when caches
 /// fill and rates say little.
 std::string ProgressBar::left() const {
+  if (expected_)
+    return time_left(
+        std::max(0.0, expected_->second - seconds_of(Clock::now() - expected_->first)));
   const double spent = seconds_of(Clock::now() - begin_);
   if (done_ == 0)
     return fmt::format("{:.0f} s{}{}", spent, wait_.empty() ? "" : ", ", wait_);
@@ -78,10 +92,8 @@ std::string ProgressBar::left() const {
   const double between = seconds_of(to - from);
   if (seconds_of(to - begin_) < 3 || last <= first || !(between > 1))
     return "time left not known yet";
-  const double rest =
-      static_cast<double>(total_ - done_) * between / static_cast<double>(last - first);
-  return rest < 100 ? fmt::format("{:.0f} s left", rest)
-                    : fmt::format("{:.0f} min left", rest / 60);
+  return time_left(static_cast<double>(total_ - done_) * between /
+                   static_cast<double>(last - first));
 }
 
 } // namespace umov::cli

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -21,6 +22,8 @@ public:
   ProgressBar &operator=(const ProgressBar &) = delete;
   /// From any thread.
   void update(std::size_t done, std::size_t total);
+  /// So many seconds are left, as the job itself knows.
+  void expect(double seconds);
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -34,6 +37,7 @@ private:
   std::condition_variable_any stopped_;
   std::size_t done_ = 0, total_ = 0;
   bool has_drawn_ = false;
+  std::optional<std::pair<Clock::time_point, double>> expected_; ///< what was left when
   /// What was done when, lately: the rate of now, not that of a slow beginning.
   std::deque<std::pair<Clock::time_point, std::size_t>> lately_;
   std::jthread drawer_; ///< last: it reads all of the above

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <umov/core/files.h>
 #include <umov/light/instruction_set.h>
+#include <umov/scale/reduction.h>
 #include <unistd.h>
 
 namespace umov::cli {
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 
 /// Above these somebody is asked first.
 constexpr double many_core_hours = 100, many_gigabytes = 100;
+/// More than is stored as it is: what is wanted of it is made with it.
+constexpr double too_many_gigabytes = 1000;
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -42,8 +45,11 @@ Result<void> ask_about(const scale::Plan &plan, const ScaleJobOptions &o) {
     return fail(ErrorCode::Interrupted, "not begun");
   }
   return fail(ErrorCode::Usage,
-              fmt::format("{:.0f} core-h and {:.0f} GB: --yes says that so much is meant",
-                          plan.core_hours, plan.gigabytes));
+              fmt::format("{:.0f} core-h and {:.0f} GB: --yes says that so much is meant{}",
+                          plan.core_hours, plan.gigabytes,
+                          plan.gigabytes < too_many_gigabytes
+                              ? ""
+                              : "; --reduce keeps histograms or extremes in place of all rows"));
 }
 
 Result<void> hold_to(const std::string &instruction_set) {
@@ -67,10 +73,12 @@ Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanS
                                     const Common &common, Diagnostics &diagnostics,
                                     std::unique_ptr<jobs::RangedJob> &job) {
   UMOV_TRY(hold_to(o.instruction_set));
+  UMOV_TRY(scale::check_reductions(o.reductions));
   PartsSetting parts;
   parts.options.threads = 1; // CPU seconds of a core are what is told
   parts.options.mask_cache = fs::absolute(o.folder) / "masks";
   parts.monitor.cancel = &interrupted();
+  parts.reductions = o.reductions;
   note(common, "reading the job and measuring some of it ...");
   const double before = cpu_seconds();
   UMOV_ASSIGN(made, verb_in_parts(o.verb, o.arguments, parts, diagnostics));
@@ -80,6 +88,7 @@ Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanS
   out.arguments = o.arguments;
   out.directory = fs::current_path().string();
   out.instruction_set = o.instruction_set;
+  out.reductions = o.reductions;
   out.identity = job->identity();
   out.unit = job->unit();
   out.total = job->total();
@@ -104,6 +113,7 @@ Result<scale::JobFolder> folder_of(const ScaleJobOptions &o, const scale::PlanSe
   if (o.verb.empty() || is_there) {
     UMOV_ASSIGN(folder, scale::JobFolder::open(o.folder));
     const bool is_same = o.verb == folder.lock().verb && o.arguments == folder.lock().arguments &&
+                         o.reductions == folder.lock().reductions &&
                          (o.per_shard == 0 || o.per_shard == folder.lock().per_shard);
     if (o.verb.empty() || is_same)
       return std::move(folder);

@@ -5,6 +5,7 @@
 #include <map>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/scale/reduction.h>
 
 namespace umov::cli {
 namespace {
@@ -25,6 +26,7 @@ public:
   [[nodiscard]] std::string order() const override { return job_->order(); }
   [[nodiscard]] std::string nothing() const override { return job_->nothing(); }
   [[nodiscard]] std::string problems() const override { return job_->problems(); }
+  [[nodiscard]] bool is_reduced() const override { return job_->is_reduced(); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return job_->warnings(); }
   [[nodiscard]] std::vector<jobs::Tally> tallies() const override { return job_->tallies(); }
   Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &monitor,
@@ -84,10 +86,11 @@ Result<std::unique_ptr<jobs::RangedJob>> verb_in_parts(const std::string &verb,
     return tl::unexpected(made.error());
   if (made->job->total() == 0)
     return fail(ErrorCode::Nothing, "the job has no " + made->job->unit());
+  UMOV_ASSIGN(job, scale::reduced_job(std::move(made->job), setting.reductions));
   if (made->file.empty())
-    return std::move(made->job);
+    return std::move(job);
   UMOV_ASSIGN(contents, read_file(made->file));
-  return std::make_unique<WithFile>(std::move(made->job), made->file, contents);
+  return std::make_unique<WithFile>(std::move(job), made->file, contents);
 }
 
 } // namespace umov::cli

@@ -12,6 +12,7 @@ struct PartsSetting {
   jobs::JobOptions options;
   std::vector<std::size_t> layout; ///< RangedJob::layout, where it is known
   jobs::Monitor monitor = {};
+  std::vector<std::string> reductions = {}; ///< umov/scale/reduction.h
 };
 
 /// A verb's job, and the name of a file that its rows depend on besides; "" for none.

@@ -11,7 +11,8 @@ namespace umov::cli {
 /// A folder, and where it is to be made the verb whose job it is for.
 struct ScaleJobOptions {
   std::string folder, verb, instruction_set;
-  std::vector<std::string> arguments; ///< of the verb
+  std::vector<std::string> arguments;  ///< of the verb
+  std::vector<std::string> reductions; ///< umov/scale/reduction.h
   std::size_t per_shard = 0;
   bool may_cost_much = false;
 };

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <new>
 #include <umov/light/instruction_set.h>
 #include <umov/scale/shard_work.h>
 
@@ -29,11 +30,24 @@ Result<void> work(const std::string &path, const Common &common) {
   parts.options = job_options(common);
   parts.options.mask_cache = folder.path() / "masks";
   parts.layout = lock.layout;
+  parts.reductions = lock.reductions;
   parts.monitor.cancel = &scale::parent_has_left();
   Diagnostics told_at_the_begin;
   UMOV_ASSIGN(job, verb_in_parts(lock.verb, lock.arguments, parts, told_at_the_begin));
   UMOV_TRY(scale::check_same_job(folder, *job));
   return scale::serve_shards(folder, *job);
+}
+
+/// A job that is too large to be made ready has no shard at all.
+Result<void> work_within_memory(const std::string &path, const Common &common) {
+  try {
+    return work(path, common);
+  } catch (const std::bad_alloc &) {
+    return fail(ErrorCode::Device,
+                "the job needs more memory than its process may have: fewer --workers, or "
+                "--memory-mb, give each more",
+                {path});
+  }
 }
 
 /// The exit code; who asks for shards hears why there are none.
@@ -53,13 +67,17 @@ void add_scale_worker(CLI::App &scale, const Exit &exit_with) {
       "worker", "Shards whose numbers come line by line on the standard input; a record of each");
   auto folder = std::make_shared<std::string>();
   auto common = std::make_shared<Common>();
+  auto memory_mb = std::make_shared<std::size_t>(0);
   verb->add_option("folder", *folder, "Folder of the job")->required();
+  verb->add_option("--memory-mb", *memory_mb,
+                   "Of this process; default: nine tenths of what is here")
+      ->check(CLI::Range(1, 1'000'000'000));
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
   verb->callback([=] {
     std::signal(SIGINT, SIG_IGN); // who started it says when it ends
-    const auto done = work(*folder, *common);
-    exit_with(code_of(done));
+    scale::hold_to_memory(*memory_mb);
+    exit_with(code_of(work_within_memory(*folder, *common)));
   });
 }
 

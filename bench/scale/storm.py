@@ -1,23 +1,28 @@
 #!/usr/bin/env python3
 """kill -9 of workers and of the driver at random moments, each time gone on from: the bytes, what it cost, what was left.
 
-    .deps/venv/bin/python bench/scale/storm.py [--kills 100] [--shard-s 0.1] [--life-s 0.6] [--workers 1] [--dask KILLS] [--ctrl-c 10]
+    .deps/venv/bin/python bench/scale/storm.py [--kills 100] [--shard-s 0.1] [--life-s 0.6] [--workers 1] [--ctrl-c 10]
+    .deps/venv/bin/python bench/scale/storm.py --kills 0 --dask 100 [--dask-shard-s 0.5] [--dask-life-s 3]
 
 A job by rays. Its shards take --shard-s seconds; something lives --life-s seconds on average before it is killed. With --dask:
-so many kills of the worker processes of a LocalCluster of two as well, six seconds apart. With --ctrl-c: so many runs ended by an
+so many kills of drivers, nannies, workers and their umov on a Dask cluster of two workers. With --ctrl-c: so many runs ended by an
 interrupt, and gone on from with the command that each prints.
 """
 import argparse
+import collections
+import contextlib
+import json
 import os
 import pathlib
 import random
 import re
 import signal
 import subprocess
+import sys
 import tempfile
-import threading
 import time
 
+import dask_here
 import psutil
 from scenes import UMOV, Stopwatch, by_rays, cubesat, load, lock, merged, plain, umov
 
@@ -76,27 +81,70 @@ def storm(folder, kills, life_s, workers, rng):
     return killed, none, lost_files
 
 
-def dask_storm(folder, kills):
-    """Workers of a LocalCluster, killed six seconds apart."""
-    import umov as package
-    killed, stop = [], threading.Event()
+class DaskCluster:
+    """A scheduler, two nannies with their workers, and a driver, each of which may be killed; what nobody starts again is started here,
+    as a batch system does."""
 
-    def kill():
-        while not stop.wait(6) and len(killed) < kills:
-            victims = [p for p in psutil.Process().children(recursive=True)
-                       if any(word in " ".join(p.cmdline()) for word in ("scale worker", "spawn_main"))]
-            if victims and shards(folder):
-                killed.append(random.choice(victims))
-                killed[-1].kill()
+    def __init__(self, place, folder):
+        self.place, self.folder = place, folder
+        self.scheduler, self.file = dask_here.scheduler(place)
+        with open(self.file) as text:
+            self.address = json.load(text)["address"]
+        self.nannies, self.driver = [], None
+        self.revive()
 
-    thread = threading.Thread(target=kill, daemon=True)
-    thread.start()
+    def revive(self):
+        self.nannies = [one for one in self.nannies if one.poll() is None]
+        while len(self.nannies) < 2:
+            self.nannies.append(dask_here.worker(self.place, self.file, nanny=True))
+        if self.driver is None or self.driver.poll() not in (None, 0):
+            self.driver = subprocess.Popen([sys.executable, "-m", "umov.scale", "run", self.folder, "--cluster", self.address],
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": sys.path[0]})
+
+    def victims(self):
+        """Processes by what they are."""
+        out = {"driver": [psutil.Process(self.driver.pid)] if self.driver.poll() is None else [], "nanny": [], "worker": [], "umov": []}
+        for nanny in self.nannies:
+            if nanny.poll() is not None:
+                continue
+            out["nanny"].append(psutil.Process(nanny.pid))
+            for below in out["nanny"][-1].children(recursive=True):
+                words = " ".join(below.cmdline())
+                if "scale worker" in words:
+                    out["umov"].append(below)
+                elif "spawn_main" in words:
+                    out["worker"].append(below)
+        return out
+
+    def close(self):
+        for process in (self.driver, *self.nannies, self.scheduler):
+            process.terminate()
+        for process in (self.driver, *self.nannies, self.scheduler):
+            process.wait(30)
+
+
+def dask_storm(place, folder, kills, life_s, rng):
+    """Kills a driver, a nanny, a worker or its umov, at random, until so many are dead; then lets the driver end."""
+    cluster, killed, none, seen = DaskCluster(place, folder), collections.Counter(), 0, set()
     try:
-        package.scale.run(None, folder, cluster="local:2")
+        while sum(killed.values()) < kills and cluster.driver.poll() != 0:
+            time.sleep(rng.uniform(0, 2 * life_s))
+            with contextlib.suppress(psutil.NoSuchProcess):
+                kinds = {kind: found for kind, found in cluster.victims().items() if found}
+                kind = rng.choice(sorted(kinds))
+                rng.choice(kinds[kind]).kill()
+                killed[kind] += 1
+            time.sleep(0.05)
+            cluster.revive()
+            there = shards(folder)
+            assert seen <= there, "a finished shard is gone"
+            none += len(there) == len(seen)
+            seen = there
+        while cluster.driver.poll() is None and len(shards(folder)) == len(seen):
+            time.sleep(0.1)
     finally:
-        stop.set()
-        thread.join()
-    return len(killed)
+        cluster.close()
+    return killed, none
 
 
 def interrupts(folder, times, life_s, rng):
@@ -120,22 +168,23 @@ def main():
     parser.add_argument("--life-s", type=float, default=0.6)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--dask", type=int, default=0)
+    parser.add_argument("--dask-shard-s", type=float, default=0.5)
+    parser.add_argument("--dask-life-s", type=float, default=3)
     parser.add_argument("--ctrl-c", type=int, default=0)
     given = parser.parse_args()
     rng = random.Random(25)
     with tempfile.TemporaryDirectory(prefix="umov-storm-") as place:
         scene = cubesat(place)
         rate = lock(f"{place}/trial", by_rays(scene, 100_000))["predicted"]["cpu_s"]
-        per_shard = max(1, round(given.shard_s / rate))
 
-        def job(name, seconds):
-            count = max(20, round(seconds / given.shard_s))
+        def job(name, seconds, shard_s):
+            per_shard, count = max(1, round(shard_s / rate)), max(20, round(seconds / shard_s))
             command = by_rays(scene, per_shard * count)
             lock(f"{place}/{name}", command, "--per-shard", per_shard)
             return f"{place}/{name}", command, count
 
         if given.kills:
-            folder, command, count = job("kills", 0.8 * given.kills * given.life_s * given.workers)
+            folder, command, count = job("kills", 0.8 * given.kills * given.life_s * given.workers, given.shard_s)
             with Stopwatch() as took:
                 killed, none, lost = storm(folder, given.kills, given.life_s, given.workers, rng)
             print(f"{count} shards of {given.shard_s} s, {killed['driver']} drivers and {killed['worker']} workers killed in "
@@ -143,13 +192,16 @@ def main():
                   f"{len(shards(folder))} shards done then; {load()}")
             finish(folder, command, shards(folder))
         if given.dask:
-            folder, command, count = job("dask", 8 * given.dask)
-            begin = time.monotonic()
-            kills = dask_storm(folder, given.dask)
-            print(f"Dask: {count} shards, {kills} kills in {time.monotonic() - begin:.0f} s; {len(shards(folder))} done")
+            folder, command, count = job("dask", given.dask * given.dask_life_s, given.dask_shard_s)
+            with Stopwatch() as took:
+                killed, none = dask_storm(place, folder, given.dask, given.dask_life_s, rng)
+            time.sleep(6)  # what a dead parent leaves ends within five seconds
+            print(f"Dask: {count} shards of {given.dask_shard_s} s, {sum(killed.values())} kills ({dict(killed)}) in {took.wall:.0f} s, {none} of "
+                  f"them before another shard was done; {len(shards(folder))} shards done then, {len(left_over(folder))} processes left; {load()}",
+                  flush=True)
             finish(folder, command, shards(folder))
         if given.ctrl_c:
-            folder, command, count = job("interrupts", 1.5 * given.ctrl_c * given.life_s)
+            folder, command, count = job("interrupts", 1.5 * given.ctrl_c * given.life_s, given.shard_s)
             codes = interrupts(folder, given.ctrl_c, given.life_s, rng)
             print(f"Ctrl-C: {count} shards, exit codes {codes}; {len(shards(folder))} done then")
             finish(folder, command, shards(folder))

@@ -6,36 +6,19 @@
 The driver is that of umov.scale, over a folder locked for so many shards; what a worker does is nothing but a record. The scheduler
 and its two workers are processes of their own, behind the loopback.
 """
-import os
-import subprocess
 import sys
 import tempfile
 import time
 
+import dask_here
 import psutil
 from scenes import by_rays, cubesat, load, lock
-
-SCHEDULER = "import sys; from distributed.cli.dask_scheduler import main; main()"
-WORKER = "import sys; from distributed.cli.dask_worker import main; main()"
 
 
 def done_at_once(index, *_):
     """As a worker's record of a shard that is there."""
     return {"index": index, "status": "done", "code": 0, "message": "", "file": f"{index:08d}-" + "0" * 54, "sha256": "0" * 64,
             "rows": 4096, "bytes": 737280, "seconds": 10.0, "cpu_s": 10.0}
-
-
-def cluster(place):
-    """The scheduler and its workers."""
-    file = f"{place}/scheduler.json"
-    common = ["--host", "127.0.0.1", "--no-dashboard"]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    first = subprocess.Popen([sys.executable, "-c", SCHEDULER, *common, "--port", "0", "--scheduler-file", file], **quiet)
-    while not os.path.exists(file):
-        time.sleep(0.1)
-    workers = [subprocess.Popen([sys.executable, "-c", WORKER, *common, "--nthreads", "1", "--scheduler-file", file,
-                                 "--local-directory", place], **quiet) for _ in range(2)]
-    return file, first, workers
 
 
 def main():
@@ -46,7 +29,8 @@ def main():
     counts = [int(word) for word in sys.argv[1:]] or [10_000, 50_000]
     with tempfile.TemporaryDirectory(prefix="umov-tasks-") as place:
         scene = cubesat(place)
-        file, first, workers = cluster(place)
+        first, file = dask_here.scheduler(place)
+        workers = [dask_here.worker(place, file) for _ in range(2)]
         try:
             with open(file) as text:
                 dask = Cluster(json.load(text)["address"], True)

@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 
+import numpy as np
 import pytest
 from conftest import EXAMPLES, UMOV
 
@@ -79,6 +80,30 @@ def test_curves_without_an_answer_are_told(scene, cluster):
     done = subprocess.run([sys.executable, "-m", "umov.scale", "run", "out", "--cluster", "local:1", "--program", UMOV],
                           capture_output=True, text=True)
     assert done.returncode == 3 and told in done.stderr  # as umov scale run --cluster
+
+
+@pytest.mark.parametrize("cluster", [None, "local:1"])
+def test_what_is_kept_of_rows_is_small_and_that_of_all_rows(scene, cluster):
+    job, reduce = job_of(scene, 300), ["log-histogram:intensity:1e-3:10:20", "most:intensity:7"]
+    whole = umov.scale.run(job, "whole", per_shard=300).rows()
+    result = umov.scale.run(job, "out", cluster=cluster, reduce=reduce, per_shard=40)
+    assert result.lock["tables"] == ["log_histogram_intensity", "most_intensity"]
+    assert umov.scale.plan(job, reduce=reduce).gigabytes < 0.5 * umov.scale.plan(job).gigabytes
+    result.merge("histogram.csv")
+    result.merge("most.csv", "most_intensity")
+
+    def column(file, name):
+        lines = [line.split(",") for line in pathlib.Path(file).read_text().splitlines() if not line.startswith("#")]
+        return [line[lines[0].index(name)] for line in lines[1:]]
+
+    assert sum(map(int, column("histogram.csv", "count"))) == len(whole) == 900
+    counts, _ = np.histogram(whole["intensity"], np.geomspace(1e-3, 10, 21))
+    told = np.array(list(map(int, column("histogram.csv", "count")))).reshape(3, 23)[:, :20].sum(axis=0)
+    assert told.tolist() == counts.tolist()
+    for band in set(whole["band"]):
+        best = np.sort(whole["intensity"][whole["band"] == band])[::-1][:7]
+        mine = [float(value) for value, of in zip(column("most.csv", "intensity"), column("most.csv", "band")) if of == band]
+        assert mine == pytest.approx(best.tolist(), rel=1e-6)  # as a CSV has them
 
 
 def test_rows_are_opened_lazily(scene):

@@ -91,18 +91,21 @@ class Cluster:
 class Driver:
     """Gives shards to a cluster, so many at a time, until none is missing."""
 
-    def __init__(self, result: Result, cluster: Cluster, threads: int, timeout_s: float | None, quiet: bool) -> None:
+    def __init__(self, result: Result, cluster: Cluster, threads: int, timeout_s: float | None, quiet: bool,
+                 memory_mb: int | None = None) -> None:
         lock = result.lock
         predicted = lock["predicted"]
         shard_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) + predicted["cpu_s"] * lock["per_shard"]
         self.result, self.cluster, self.quiet = result, cluster, quiet
         self.do = do_shard_of_store if is_url(result.folder) else do_shard
-        self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * shard_s))
+        self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * shard_s), memory_mb)
         self.todo = iter(result.missing)
         self.futures: dict[str, Any] = {}
         self.ended: queue.Queue[Any] = queue.Queue()
         self.left = len(result.missing)
         self.done = self.failed = self.lost = 0
+        self.seconds: list[float] = []
+        self.predicted_s = predicted["cpu_s"] * lock["per_shard"] / threads
         self.known: set[str] = set()
         self.began = self.told = self.looked = time.monotonic()
         self.stopped: Error | Interrupted | None = None
@@ -166,7 +169,9 @@ class Driver:
         self.lost = 0
         if record["status"] in ("done", "there"):
             self.done += 1
-        elif record["status"] == "refused" or record["code"] in (6, 130):
+            if record["status"] == "done":
+                self.seconds.append(record["seconds"])
+        elif record["status"] == "refused" or (record["status"] == "failed" and record["code"] in (6, 130)):
             self._stop(error_from((record["code"], record["message"], "", 0, 0)))
         else:
             self.failed += 1
@@ -221,10 +226,17 @@ class Driver:
                   "longer lives are needed.", file=sys.stderr, flush=True)
         if not self.quiet and now - self.told > 5:
             self.told = now
-            ended = self.done + self.failed
-            left = f", about {(now - self.began) * (self.left - ended) / ended:.0f} s left" if ended else ""
-            print(f"shards {self.done} of {self.left}, {self.failed} failed, {len(workers)} workers{left}", file=sys.stderr,
-                  flush=True)
+            print(f"shards {self.done} of {self.left}, {self.failed} failed, {len(workers)} workers, "
+                  f"about {self.seconds_left(len(workers)):.0f} s left", file=sys.stderr, flush=True)
+
+    def seconds_left(self, workers: int) -> float:
+        """From what the later half of the shards have taken; by the prediction until there is one. Of those in hand half is
+        done, one for each worker."""
+        workers = max(1, workers)
+        lately = self.seconds[len(self.seconds) // 2:]
+        shard_s = sum(lately) / len(lately) if lately else self.predicted_s
+        rest = self.left - self.done - self.failed
+        return max(0.0, rest - min(workers, rest) / 2) * shard_s / workers
 
 
 class Hold:

@@ -230,12 +230,13 @@ def _folder_of_this_worker(store: Store) -> pathlib.Path:
         return _folders[store.url]
 
 
-def do_shard_of_store(index: int, program: str, url: str, threads: int, timeout_s: float) -> dict[str, Any]:
+def do_shard_of_store(index: int, program: str, url: str, threads: int, timeout_s: float,
+                      memory_mb: int | None = None) -> dict[str, Any]:
     """One shard, in a Dask worker, and into the store. Never raises: what went wrong is in the record."""
     try:
         store = Store(url)
         folder = _folder_of_this_worker(store)
-        record = do_shard(index, program, str(folder), threads, timeout_s)
+        record = do_shard(index, program, str(folder), threads, timeout_s, memory_mb)
         if record["status"] in ("done", "there"):
             file = next((folder / "shards").rglob(record["file"]))
             store.put(file, f"shards/{file.name}")

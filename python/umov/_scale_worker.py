@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import atexit
+import importlib
 import json
 import select
 import subprocess
@@ -9,15 +10,17 @@ import threading
 from typing import Any
 
 
-#: Of a shard that ends its process, and of one that hangs: each of those costs ten times what it should have taken.
+#: Of a shard that ends its process or runs out of memory, and of one that hangs: each of those costs ten times what
+#: it should have taken.
 _ATTEMPTS, _ATTEMPTS_AT_HANGS = 3, 2
 
 
 class _Server:
     """A process of the command that does shards; ends with this one, as its standard input does."""
 
-    def __init__(self, program: str, folder: str, threads: int) -> None:
-        self.process = subprocess.Popen([program, "scale", "worker", folder, "--threads", str(threads), "-q"],
+    def __init__(self, program: str, folder: str, threads: int, memory_mb: int | None) -> None:
+        more = ["--memory-mb", str(memory_mb)] if memory_mb else []
+        self.process = subprocess.Popen([program, "scale", "worker", folder, "--threads", str(threads), *more, "-q"],
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
 
     def ask(self, index: int, timeout_s: float) -> str | None:
@@ -63,7 +66,17 @@ def _end_all() -> None:
             server.end(5.0)
 
 
-def do_shard(index: int, program: str, folder: str, threads: int, timeout_s: float) -> dict[str, Any]:
+def _memory_of_this_worker_mb() -> int | None:
+    """What Dask gives a thread of this worker; None: it sets no limit, and nine tenths of the machine are the command's own."""
+    try:
+        worker = importlib.import_module("distributed").get_worker()
+        return int((worker.memory_manager.memory_limit or 0) / worker.state.nthreads / 1e6) or None
+    except (ImportError, ValueError, AttributeError):
+        return None
+
+
+def do_shard(index: int, program: str, folder: str, threads: int, timeout_s: float,
+             memory_mb: int | None = None) -> dict[str, Any]:
     """One shard, in a Dask worker. Never raises: what went wrong is in the record."""
     key = (program, folder, threads)
     why: dict[str, Any] = {}
@@ -71,17 +84,21 @@ def do_shard(index: int, program: str, folder: str, threads: int, timeout_s: flo
         with _idle_lock:
             server = _idle[key].pop() if _idle.get(key) else None
         try:
-            server = server or _Server(program, folder, threads)
+            server = server or _Server(program, folder, threads, memory_mb or _memory_of_this_worker_mb())
         except OSError as problem:
             return {"index": index, "status": "failed", "code": 6, "message": f"{program}: {problem}"}
         line = server.ask(index, timeout_s)
-        if line:
+        record = {**json.loads(line), "attempts": attempt} if line else None
+        if record and record["status"] != "exhausted":
             with _idle_lock:
                 _idle.setdefault(key, []).append(server)
-            return {**json.loads(line), "attempts": attempt}
+            return record
         if line is None:
             server.process.kill()
         code = server.end()
+        if record:
+            why = record
+            continue
         message = (f"it was not done after {timeout_s:.0f} s" if line is None else
                    f"its process was ended by signal {-code}" if code < 0 else f"its process ended with {code}")
         why = {"index": index, "status": "failed", "code": 128 - code if code < 0 else code, "message": message,

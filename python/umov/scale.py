@@ -14,6 +14,7 @@ import os
 import pathlib
 import sys
 import tempfile
+from collections.abc import Sequence
 from typing import Any
 
 from . import _scale_store
@@ -83,7 +84,7 @@ class Plan:
     once_cpu_s: float  #: of the whole job: masks, which all processes read
 
 
-def plan(job: Job, *, cores: int | None = None, program: str | None = None) -> Plan:
+def plan(job: Job, *, cores: int | None = None, reduce: str | Sequence[str] = (), program: str | None = None) -> Plan:
     """What a job will cost; nothing is written.
 
     Parameters
@@ -92,6 +93,8 @@ def plan(job: Job, *, cores: int | None = None, program: str | None = None) -> P
         What is to be done.
     cores
         That will be at work; by default those of this machine.
+    reduce
+        As in `run`.
     program
         The command umov; by default the one beside this package.
 
@@ -100,7 +103,7 @@ def plan(job: Job, *, cores: int | None = None, program: str | None = None) -> P
     >>> umov.scale.plan(umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=1000, phase=60)).shards
     1
     """
-    more = ["--cores", cores] if cores else []
+    more = [*(["--cores", cores] if cores else []), *_reduce_words(reduce)]
     return Plan(**json.loads(call(find_program(program), "plan", "--json", "-q", *more, "not-made", *job.words)))
 
 
@@ -214,7 +217,8 @@ class Result:
 
     def rows(self, table: str | None = None) -> Rows:
         """Rows of a table over all shards, mapped: nothing is read until it is asked for. Those of passes stand
-        shard by shard here, and by their rise only in what `merge` writes.
+        shard by shard here, and by their rise only in what `merge` writes; what is kept of rows (`reduce`) stands here for
+        each shard, and is put together by `merge`.
 
         Parameters
         ----------
@@ -270,8 +274,14 @@ class Result:
         return ds.dataset(out, format="parquet")
 
 
-def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None, per_shard: int | None = None,
-        threads: int = 1, timeout_s: float | None = None, join: bool = False, yes: bool = False, tls: bool = True,
+def _reduce_words(reduce: str | Sequence[str]) -> list[str]:
+    return [word for text in ([reduce] if isinstance(reduce, str) else reduce) for word in ("--reduce", text)]
+
+
+def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None, reduce: str | Sequence[str] = (),
+        per_shard: int | None = None,
+        threads: int = 1, timeout_s: float | None = None, memory_mb: int | None = None, join: bool = False,
+        yes: bool = False, tls: bool = True,
         quiet: bool = True, program: str | None = None) -> Result:
     """Does what is missing of a job, and gives its folder. Curves without an answer are told as a warning.
 
@@ -287,10 +297,18 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
         cluster or client, or the address of a scheduler ("tls://host:8786"). The folder must be seen by all workers.
     per_shard
         Poses, objects, passes, exposures or curves of a shard; by default what takes 10 to 120 s.
+    reduce
+        What is kept in place of the rows where these are made faster than they can be stored, each a table of the result:
+        "histogram:COLUMN:LOW:HIGH:BINS" (LOW belongs to the first bin, HIGH to none), "log-histogram:..." (bins of one
+        ratio), "most:COLUMN:COUNT" or "least:COLUMN:COUNT" (whole rows). Of each band, or of each value of the columns in
+        ":BY+BY" behind it. Its table is "log_histogram_intensity" and so on.
     threads
         Of each worker of a cluster.
     timeout_s
         Of a shard; by default ten times what is predicted, at least 60.
+    memory_mb
+        Of each process that does shards: one that wants more is told as a shard that could not be done. By default what Dask
+        gives a worker, or nine tenths of the machine.
     join
         Take part in a job that another is at.
     yes
@@ -316,6 +334,8 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     >>> job = umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=20, phase=60)
     >>> result = umov.scale.run(job, "agena_run")  # with cluster="local:8" on eight workers
     >>> result.merge("agena.csv")
+    >>> brightness = umov.scale.run(job, "agena_histogram", reduce="log-histogram:intensity:1e-4:100:60")
+    >>> brightness.merge("histogram.csv")
     """
     umov = find_program(program)
     if job is not None and not isinstance(job, Job):
@@ -324,9 +344,10 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     timeout_s = None if timeout_s is None else number(timeout_s, "timeout_s")
     if is_url(output) and cluster is None:
         raise UsageError(f"output is {output}; an object store takes a cluster: cluster=\"local:{os.cpu_count()}\" is this machine")
-    more = (["--per-shard", per_shard] if per_shard else []) + (["--yes"] if yes else [])
+    more = [*(["--per-shard", per_shard] if per_shard else []), *(["--yes"] if yes else []), *_reduce_words(reduce)]
     if cluster is None:
         call_for_rows(umov, "run", "-q", *more, *(["--timeout-s", timeout_s] if timeout_s else []),
+                      *(["--memory-mb", memory_mb] if memory_mb else []),
                       *(["--join"] if join else []), output, *words)
         return Result(output, umov)
     if words and is_url(output):
@@ -335,19 +356,20 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
         call(umov, "lock", "-q", *more, output, *words)
     result = Result(output, umov)
     if result.missing:
-        _do_missing(result, cluster, threads, timeout_s, join, tls, quiet)
+        _do_missing(result, cluster, threads, timeout_s, join, tls, quiet, memory_mb)
     if result._store is None and not result.missing:  # of a store, `merge` tells
         call_for_rows(umov, "run", "-q", *(["--join"] if join else []), result.folder)
     return result
 
 
-def _do_missing(result: Result, cluster: Any, threads: int, timeout_s: float | None, join: bool, tls: bool, quiet: bool) -> None:
+def _do_missing(result: Result, cluster: Any, threads: int, timeout_s: float | None, join: bool, tls: bool, quiet: bool,
+                memory_mb: int | None = None) -> None:
     """By the workers of a cluster."""
     hold = None if join else StoreLease(result._store) if result._store else Hold(result._umov, pathlib.Path(result.folder))
     try:
         dask = Cluster(cluster, tls)
         try:
-            driver = Driver(result, dask, threads, timeout_s, quiet)
+            driver = Driver(result, dask, threads, timeout_s, quiet, memory_mb)
             driver.run()
         finally:
             dask.close()

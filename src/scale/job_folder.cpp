@@ -2,11 +2,17 @@
 
 #include "scale/whole_number.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <dirent.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <sys/stat.h>
 #include <umov/core/files.h>
 #include <umov/core/temporary.h>
 #include <umov/core/text.h>
@@ -56,16 +62,54 @@ Result<bool> create(const fs::path &path, const std::string &bytes) {
 }
 
 /// "00000012-KEY-SHA.rows" of a job with that key.
-std::optional<Shard> shard_of(const std::string &name, const std::string &key) {
-  if (name.size() != 8 + 1 + 16 + 1 + 32 + 5 || !name.ends_with(".rows") ||
-      name.compare(8, 18, "-" + key + "-") != 0)
+std::optional<Shard> shard_of(std::string_view name, std::string_view key) {
+  if (name.size() != 8 + 1 + 16 + 1 + 32 + 5 || !name.ends_with(".rows") || name[8] != '-' ||
+      name.substr(9, 16) != key || name[25] != '-')
     return std::nullopt;
-  Shard out{0, name, name.substr(26, 32)};
-  const auto read = std::from_chars(name.data(), name.data() + 8, out.index);
+  const std::string_view sum = name.substr(26, 32);
+  std::size_t index = 0;
+  const auto read = std::from_chars(name.data(), name.data() + 8, index);
   if (read.ptr != name.data() + 8 ||
-      out.sha256.find_first_not_of("0123456789abcdef") != std::string::npos)
+      sum.find_first_not_of("0123456789abcdef") != std::string_view::npos)
     return std::nullopt;
-  return out;
+  return Shard{index, std::string(name), std::string(sum)};
+}
+
+/// Something in a folder. A hundred thousand of them are looked through: what a name and a kind
+/// cost is what the system's listing costs, without a path or a question for each.
+struct Entry {
+  int folder = -1; ///< descriptor
+  const dirent *listed = nullptr;
+
+  [[nodiscard]] std::string_view name() const { return listed->d_name; }
+  /// Follows links.
+  [[nodiscard]] std::optional<struct stat> about() const {
+    struct stat out {};
+    return ::fstatat(folder, listed->d_name, &out, 0) == 0 ? std::optional(out) : std::nullopt;
+  }
+  [[nodiscard]] bool is_file() const { return is_of(DT_REG, S_IFREG); }
+  [[nodiscard]] bool is_folder() const { return is_of(DT_DIR, S_IFDIR); }
+
+private:
+  [[nodiscard]] bool is_of(unsigned char listed_as, mode_t kind) const {
+    if (listed->d_type != DT_UNKNOWN && listed->d_type != DT_LNK)
+      return listed->d_type == listed_as;
+    const auto there = about();
+    return there && (there->st_mode & S_IFMT) == kind;
+  }
+};
+
+/// Calls `take` for all that stands in a folder; the cause where it cannot be listed.
+template <class Take> int for_each_entry(const fs::path &folder, const Take &take) {
+  const std::unique_ptr<DIR, int (*)(DIR *)> open(::opendir(folder.c_str()), ::closedir);
+  if (!open)
+    return errno;
+  errno = 0;
+  while (const dirent *listed = ::readdir(open.get())) {
+    take(Entry{::dirfd(open.get()), listed});
+    errno = 0;
+  }
+  return errno;
 }
 
 } // namespace
@@ -126,40 +170,49 @@ fs::path JobFolder::growing(std::size_t index) const {
   return path_ / "tmp" / (number_of(index) + ".rows");
 }
 
-Result<Shards> JobFolder::shards() const {
+Result<Shards> JobFolder::shards(bool with_bytes) const {
   Shards out;
+  const fs::path all = path_ / "shards";
   const bool is_flat = lock_.shards() <= flat_shards;
-  // A copy elsewhere is none of ours: each number has one place.
-  const auto take = [&](const fs::directory_entry &entry, std::optional<std::size_t> thousand) {
-    auto shard = shard_of(entry.path().filename().native(), key_);
-    if (shard && shard->index < lock_.shards() &&
-        (is_flat ? !thousand : thousand == shard->index / per_folder) && entry.is_regular_file())
-      out[shard->index].push_back(std::move(*shard));
+  const auto take = [&](const Entry &entry, std::optional<std::size_t> thousand) {
+    auto shard = shard_of(entry.name(), key_);
+    // A copy elsewhere is none of ours: each number has one place.
+    if (!shard || shard->index >= lock_.shards() ||
+        !(is_flat ? !thousand : thousand == shard->index / per_folder) || !entry.is_file())
+      return;
+    if (const auto about = with_bytes ? entry.about() : std::nullopt)
+      shard->bytes = static_cast<std::size_t>(about->st_size);
+    out[shard->index].push_back(std::move(*shard));
   };
-  try {
-    for (const auto &entry : fs::directory_iterator(path_ / "shards"))
-      if (const std::string name = entry.path().filename().string();
-          is_flat || name.size() != 5 || !entry.is_directory())
-        take(entry, std::nullopt);
-      else if (std::size_t number = 0;
-               std::from_chars(name.data(), name.data() + 5, number).ptr == name.data() + 5)
-        for (const auto &below : fs::directory_iterator(entry.path()))
-          take(below, number);
-  } catch (const fs::filesystem_error &problem) {
-    return fail(ErrorCode::Device, std::string("cannot be listed: ") + problem.what(),
-                {(path_ / "shards").string()});
-  }
+  std::vector<std::size_t> thousands;
+  int cause = for_each_entry(all, [&](const Entry &entry) {
+    const std::string_view name = entry.name();
+    std::size_t number = 0;
+    if (is_flat)
+      take(entry, std::nullopt);
+    else if (name.size() == 5 &&
+             std::from_chars(name.data(), name.data() + 5, number).ptr == name.data() + 5 &&
+             entry.is_folder())
+      thousands.push_back(number);
+  });
+  std::ranges::sort(thousands); // what follows is put in order as it comes
+  for (std::size_t k = 0; k < thousands.size() && cause == 0; ++k)
+    cause = for_each_entry(all / fmt::format("{:05d}", thousands[k]),
+                           [&](const Entry &entry) { take(entry, thousands[k]); });
+  if (cause != 0)
+    return fail(ErrorCode::Device, std::string("cannot be listed: ") + std::strerror(cause),
+                {all.string()});
   return out;
 }
 
 std::optional<Shard> JobFolder::find(std::size_t index) const {
-  std::error_code unknown;
   const std::string begin = number_of(index);
-  for (const auto &entry : fs::directory_iterator(folder_of(index), unknown))
-    if (const std::string name = entry.path().filename().string(); name.starts_with(begin))
-      if (const auto shard = shard_of(name, key_))
-        return shard;
-  return std::nullopt;
+  std::optional<Shard> out;
+  for_each_entry(folder_of(index), [&](const Entry &entry) {
+    if (!out && entry.name().starts_with(begin))
+      out = shard_of(entry.name(), key_);
+  });
+  return out;
 }
 
 void JobFolder::sweep() const {

@@ -38,6 +38,7 @@ std::string to_json(const JobLock &lock) {
                  {"layout", lock.layout},
                  {"tables", lock.tables},
                  {"order", lock.order},
+                 {"reduce", lock.reductions},
                  {"nothing", lock.nothing},
                  {"problems", lock.problems},
                  {"warnings", lock.warnings},
@@ -46,7 +47,8 @@ std::string to_json(const JobLock &lock) {
                   {{"cpu_s", lock.rate.cpu_s},
                    {"bytes", lock.rate.bytes},
                    {"setup_cpu_s", lock.rate.setup_cpu_s},
-                   {"once_cpu_s", lock.rate.once_cpu_s}}},
+                   {"once_cpu_s", lock.rate.once_cpu_s},
+                   {"shard_bytes", lock.rate.shard_bytes}}},
                  {"job", lock.identity}};
   return out.dump(1) + "\n";
 }
@@ -69,6 +71,8 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
     all.at("order").get_to(out.order);
     out.nothing = all.value("nothing", ""); // jobs begun by 0.1 have none
     out.problems = all.value("problems", "");
+    if (all.contains("reduce"))
+      all.at("reduce").get_to(out.reductions);
     if (all.contains("warnings"))
       all.at("warnings").get_to(out.warnings);
     for (const json &tally : all.value("tallies", json::array()))
@@ -79,7 +83,10 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
     out.rate = {all.at("predicted").at("cpu_s").get<double>(),
                 all.at("predicted").at("bytes").get<double>(),
                 all.at("predicted").at("setup_cpu_s").get<double>(),
-                all.at("predicted").value("once_cpu_s", 0.0)}; // jobs begun by 0.1 have none
+                all.at("predicted").value("once_cpu_s", 0.0), // jobs begun by 0.1 have none
+                all.at("predicted").value("shard_bytes", 0.0)};
+    if (!out.reductions.empty() && out.reductions.size() != out.tables.size())
+      throw std::runtime_error("with other tables than it is reduced to");
     if (out.per_shard == 0 || out.tables.empty())
       throw std::runtime_error("without shards or tables");
     if (all.at("key").get<std::string>() != out.key())

@@ -1,8 +1,11 @@
 #include <umov/scale/merge.h>
 
+#include "scale/picked_rows.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -10,6 +13,7 @@
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/jobs/invert_each.h>
+#include <umov/scale/reduction.h>
 #include <umov/scale/rows_file.h>
 #include <utility>
 
@@ -39,8 +43,8 @@ Result<RowsFile> open_checked(const JobFolder &folder, const Shard &shard) {
 }
 
 /// The one file of each shard, in order.
-Result<std::vector<Shard>> all_shards(const JobFolder &folder) {
-  UMOV_ASSIGN(there, folder.shards());
+Result<std::vector<Shard>> all_shards(const JobFolder &folder, bool with_bytes = false) {
+  UMOV_ASSIGN(there, folder.shards(with_bytes));
   std::vector<Shard> out;
   std::vector<std::size_t> missing;
   for (std::size_t k = 0; k < folder.lock().shards(); ++k) {
@@ -69,34 +73,13 @@ Result<std::vector<Shard>> all_shards(const JobFolder &folder) {
               {folder.path().string()});
 }
 
-/// Rows of a table in another order.
-Table permuted(const Table &table, const std::vector<std::size_t> &rows) {
-  Table out;
-  for (const auto &[key, value] : table.notes())
-    out.note(key, value);
-  for (const Column &column : table.columns()) {
-    out.add(column.name, column.unit, column.description,
-            std::visit(
-                [&rows](const auto &cells) -> Cells {
-                  std::decay_t<decltype(cells)> put;
-                  put.reserve(rows.size());
-                  for (const std::size_t row : rows)
-                    put.push_back(cells[row]);
-                  return put;
-                },
-                column.cells));
-    out.set_precision(column.name, column.precision);
-  }
-  return out;
-}
-
 /// All rows by a column, which goes; ties stay in the order of the shards.
 Table in_order(const Table &table, const std::string &by) {
   const auto &key = std::get<std::vector<double>>(table.find(by)->cells);
   std::vector<std::size_t> rows(table.rows());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   std::ranges::stable_sort(rows, {}, [&key](std::size_t row) { return key[row]; });
-  Table out = permuted(table, rows);
+  Table out = picked(table, rows);
   out.remove(by);
   return out;
 }
@@ -145,6 +128,28 @@ void tell(Table &block, const Ahead &ahead) {
     block.set_width(names[c], ahead.widths[c]);
 }
 
+/// What all shards keep of the rows, put together.
+Result<void> merge_reduced(const JobFolder &folder, std::size_t number, TableSink &sink,
+                           const jobs::Monitor &monitor) {
+  UMOV_ASSIGN(shards, all_shards(folder));
+  UMOV_ASSIGN(ahead, look_ahead(folder, shards, number, monitor));
+  UMOV_ASSIGN(all, make_reducer(folder.lock().reductions.at(number)));
+  for (const Shard &shard : shards) {
+    if (monitor.is_cancelled())
+      return tl::unexpected(sink.stop({ErrorCode::Interrupted, "stopped by the user", {}}));
+    UMOV_ASSIGN(file, open_checked(folder, shard));
+    for (std::size_t b = 0; b < file.blocks(number); ++b) {
+      UMOV_ASSIGN(block, file.block(number, b));
+      UMOV_TRY(all->join(block));
+    }
+    monitor.advance("shards", shard.index + 1, shards.size());
+  }
+  Table table = all->table();
+  jobs::note_warnings(table, ahead.warnings);
+  UMOV_TRY(sink.add(std::move(table)));
+  return sink.finish();
+}
+
 } // namespace
 
 Result<void> merge(const JobFolder &folder, const std::string &table, TableSink &sink,
@@ -155,6 +160,8 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
     return fail(ErrorCode::Usage, fmt::format("--table {}: no table of this job; {} was expected",
                                               printable(table), fmt::join(lock.tables, " or ")));
   const auto number = static_cast<std::size_t>(wanted - lock.tables.begin());
+  if (!lock.reductions.empty())
+    return merge_reduced(folder, number, sink, monitor);
   const bool is_sorted = number == 0 && !lock.order.empty();
   UMOV_ASSIGN(shards, all_shards(folder));
   UMOV_ASSIGN(ahead, look_ahead(folder, shards, number, monitor));
@@ -262,27 +269,24 @@ void remove_bad(const JobFolder &folder, const Verdict &verdict) {
 }
 
 Result<void> write_manifest(const JobFolder &folder) {
-  UMOV_ASSIGN(shards, all_shards(folder));
-  nlohmann::json list = nlohmann::json::array();
+  UMOV_ASSIGN(shards, all_shards(folder, true));
   std::size_t bytes = 0;
-  std::error_code unknown;
+  std::string list; // as text: a hundred thousand objects of JSON take a second
   for (const Shard &shard : shards) {
-    const auto size = std::filesystem::file_size(folder.file_of(shard), unknown);
-    bytes += unknown ? 0 : size;
+    bytes += shard.bytes;
     const jobs::IndexRange range = folder.lock().range(shard.index);
-    list.push_back({{"file", shard.name},
-                    {"first", range.first},
-                    {"count", range.count},
-                    {"bytes", unknown ? 0 : size},
-                    {"sha256_128", shard.sha256}});
+    fmt::format_to(std::back_inserter(list),
+                   "{}\n  {{\"bytes\": {}, \"count\": {}, \"file\": \"{}\", \"first\": {}, "
+                   "\"sha256_128\": \"{}\"}}",
+                   list.empty() ? "" : ",", shard.bytes, range.count, shard.name, range.first,
+                   shard.sha256);
   }
-  const nlohmann::json out{{"program", std::string("umov ") + version},
-                           {"key", folder.key()},
-                           {"unit", folder.lock().unit},
-                           {"total", folder.lock().total},
-                           {"bytes", bytes},
-                           {"shards", std::move(list)}};
-  return write_file_atomically(folder.path() / "manifest.json", out.dump(1) + "\n");
+  return write_file_atomically(
+      folder.path() / "manifest.json",
+      fmt::format("{{\n \"bytes\": {},\n \"key\": \"{}\",\n \"program\": \"umov {}\",\n "
+                  "\"shards\": [{}\n ],\n \"total\": {},\n \"unit\": {}\n}}\n",
+                  bytes, folder.key(), version, list, folder.lock().total,
+                  nlohmann::json(folder.lock().unit).dump()));
 }
 
 } // namespace umov::scale

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace umov::scale {
@@ -145,6 +146,8 @@ Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monit
     length = std::min(total, length * 2);
   }
   out.once_cpu_s = trial.learnt();
+  if (job.is_reduced())
+    out.shard_bytes = std::exchange(out.bytes, 0) * static_cast<double>(length);
   return out;
 }
 
@@ -176,7 +179,8 @@ Plan plan_of(const JobLock &lock, const PlanSettings &settings) {
   out.per_shard = lock.per_shard;
   out.shards = lock.shards();
   out.core_hours = cpu_s / 3600;
-  out.gigabytes = lock.rate.bytes * total / 1e9;
+  out.gigabytes =
+      (lock.rate.bytes * total + lock.rate.shard_bytes * static_cast<double>(out.shards)) / 1e9;
   out.shard_s =
       lock.rate.cpu_s * static_cast<double>(lock.per_shard) / static_cast<double>(settings.threads);
   out.wall_s = std::max(out.shard_s, cpu_s / static_cast<double>(settings.cores));

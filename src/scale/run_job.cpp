@@ -1,6 +1,7 @@
 #include <umov/scale/run_job.h>
 
 #include "scale/this_process.h"
+#include "scale/time_left.h"
 #include "scale/worker_process.h"
 
 #include <algorithm>
@@ -27,7 +28,8 @@ constexpr double patience_after_stop_s = 30;
 class Pool {
 public:
   Pool(const JobFolder &folder, const RunSettings &settings, const jobs::Monitor &monitor)
-      : folder_(folder), settings_(settings), monitor_(monitor) {}
+      : folder_(folder), settings_(settings), monitor_(monitor),
+        clock_(clock_of(folder.lock(), threads_of_worker())) {}
 
   Result<RunTally> run() {
     UMOV_TRY(find_missing());
@@ -41,6 +43,7 @@ public:
       wait();
       end_what_hangs();
       monitor_.advance("shards", there + tally_.done + tally_.failed, tally_.wanted);
+      tell_what_is_left();
     }
     if (!stopped_)
       return tally_;
@@ -73,6 +76,30 @@ private:
     const auto at = static_cast<std::ptrdiff_t>(somewhere_() % missing_.size());
     std::rotate(missing_.begin(), missing_.begin() + at, missing_.end());
   }
+  /// In the clock of the workers: each has its share of the predicted CPU time of a shard.
+  void tell_what_is_left() const {
+    const JobLock &lock = folder_.lock();
+    std::size_t units = missing_.size() * lock.per_shard;
+    if (!missing_.empty() && missing_.back() + 1 == lock.shards()) // which may be shorter
+      units -= lock.per_shard - lock.range(missing_.back()).count;
+    std::vector<std::size_t> in_hand;
+    std::vector<double> busy;
+    for (const WorkerProcess &worker : workers_)
+      if (const auto index = worker.index()) {
+        in_hand.push_back(lock.range(*index).count);
+        busy.push_back(worker.busy_s());
+        units += in_hand.back();
+      }
+    monitor_.tell_left(clock_.left_s(units, in_hand, busy));
+  }
+  [[nodiscard]] std::size_t threads_of_worker() const {
+    return settings_.threads > 0 ? settings_.threads
+                                 : std::max<std::size_t>(1, resolve_threads(0) / settings_.workers);
+  }
+  [[nodiscard]] static TimeLeft clock_of(const JobLock &lock, std::size_t threads) {
+    const auto at_once = static_cast<double>(threads);
+    return {lock.rate.cpu_s / at_once, lock.rate.setup_cpu_s + lock.rate.once_cpu_s / at_once};
+  }
   [[nodiscard]] bool may_start() const { return !stopped_ && !missing_.empty(); }
   void stop(Error why) {
     if (!stopped_)
@@ -81,13 +108,13 @@ private:
   }
   Result<void> start_workers() {
     while (may_start() && workers_.size() < settings_.workers) {
-      const std::size_t cores = resolve_threads(0);
-      const std::size_t threads = settings_.threads > 0
-                                      ? settings_.threads
-                                      : std::max<std::size_t>(1, cores / settings_.workers);
+      const std::size_t memory_mb =
+          settings_.memory_mb > 0 ? settings_.memory_mb
+                                  : std::max<std::size_t>(1, memory_here_mb() / settings_.workers);
       UMOV_ASSIGN(worker, WorkerProcess::start({settings_.program, "scale", "worker",
                                                 folder_.path().string(), "--threads",
-                                                std::to_string(threads), "-q"}));
+                                                std::to_string(threads_of_worker()), "--memory-mb",
+                                                std::to_string(memory_mb), "-q"}));
       workers_.push_back(std::move(worker));
       give(workers_.back());
     }
@@ -114,8 +141,7 @@ private:
     WorkerProcess &worker = workers_[k];
     const bool lives = worker.read();
     while (const auto line = worker.line()) {
-      take(*line);
-      if (!give(worker)) {
+      if (!take(*line) || !give(worker)) {
         worker.leave(milliseconds(10'000)); // it keeps its masks
         return let_go(k);
       }
@@ -124,28 +150,39 @@ private:
       lose(k, "");
   }
   void let_go(std::size_t k) { workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(k)); }
-  void take(const std::string &line) {
+  /// False: its process ends.
+  bool take(const std::string &line) {
     const auto record = record_from_json(line);
-    if (!record)
-      return stop(record.error());
-    tally_.cpu_s += record->cpu_s;
-    const auto code = static_cast<ErrorCode>(record->code);
-    if (record->status == ShardRecord::Status::Refused)
-      return stop({code, record->message, {}});
-    if (record->status != ShardRecord::Status::Failed) {
+    if (!record) {
+      stop(record.error());
+      return false;
+    }
+    note(*record);
+    return record->status != ShardRecord::Status::Exhausted;
+  }
+  void note(const ShardRecord &record) {
+    tally_.cpu_s += record.cpu_s;
+    const auto code = static_cast<ErrorCode>(record.code);
+    if (record.status == ShardRecord::Status::Refused)
+      return stop({code, record.message, {}});
+    if (record.status == ShardRecord::Status::Exhausted)
+      return again_or_never(record.index, record.code, attempts_max, record.message);
+    if (record.status != ShardRecord::Status::Failed) {
       ++tally_.done;
-      if (record->status == ShardRecord::Status::There) {
+      if (record.status == ShardRecord::Status::Done)
+        clock_.took(folder_.lock().range(record.index).count, record.seconds);
+      if (record.status == ShardRecord::Status::There) {
         ++tally_.by_others;
         go_elsewhere();
       }
-      return folder_.forget_failed(record->index);
+      return folder_.forget_failed(record.index);
     }
     if (code == ErrorCode::Device || code == ErrorCode::Interrupted)
       return stop({code,
-                   fmt::format("{} umov scale run {} goes on when that is mended.", record->message,
+                   fmt::format("{} umov scale run {} goes on when that is mended.", record.message,
                                folder_.path().string()),
                    {}});
-    give_up(record->index, record->code, attempts_[record->index] + 1, record->message);
+    give_up(record.index, record.code, attempts_[record.index] + 1, record.message);
   }
   void give_up(std::size_t index, int code, std::size_t attempts, const std::string &message) {
     ++tally_.failed;
@@ -164,11 +201,13 @@ private:
                              : code > 128 ? fmt::format("its process was ended by signal {} ({})",
                                                         code - 128, ::strsignal(code - 128))
                                           : fmt::format("its process ended with {}", code);
-    const std::size_t most = why.empty() ? attempts_max : attempts_at_hangs_max;
-    if (const std::size_t attempts = ++attempts_[*index]; attempts >= most)
-      give_up(*index, code, attempts, what);
+    again_or_never(*index, code, why.empty() ? attempts_max : attempts_at_hangs_max, what);
+  }
+  void again_or_never(std::size_t index, int code, std::size_t most, const std::string &what) {
+    if (const std::size_t attempts = ++attempts_[index]; attempts >= most)
+      give_up(index, code, attempts, what);
     else
-      missing_.push_back(*index); // behind the others, which it shall not hold up
+      missing_.push_back(index); // behind the others, which it shall not hold up
   }
   void end_what_hangs() {
     const JobLock &lock = folder_.lock();
@@ -191,6 +230,7 @@ private:
   const JobFolder &folder_;
   const RunSettings &settings_;
   const jobs::Monitor &monitor_;
+  TimeLeft clock_;
   RunTally tally_;
   std::deque<std::size_t> missing_;
   std::random_device somewhere_;

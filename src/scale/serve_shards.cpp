@@ -97,7 +97,10 @@ Result<void> serve_shards(const JobFolder &folder, jobs::RangedJob &job) {
   bool has_kept = false;
   UMOV_TRY(job.keep()); // from here on, of each object that a shard is done with
   while (const auto index = asked().next()) {
-    UMOV_TRY(say(to_json(do_shard(folder, job, *index, monitor))));
+    const ShardRecord record = do_shard(folder, job, *index, monitor);
+    UMOV_TRY(say(to_json(record)));
+    if (record.status == ShardRecord::Status::Exhausted)
+      return {}; // what took the memory may hold it still
     if (!std::exchange(has_kept, true))
       UMOV_TRY(job.keep()); // for the processes that start after this one
   }

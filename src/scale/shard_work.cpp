@@ -3,9 +3,12 @@
 #include "scale/this_process.h"
 #include "scale/whole_number.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 #include <umov/core/text.h>
 #include <umov/scale/rows_file.h>
 
@@ -13,7 +16,18 @@ namespace umov::scale {
 namespace {
 
 using nlohmann::json;
-constexpr std::array<const char *, 4> status_names{"done", "there", "failed", "refused"};
+constexpr std::array<const char *, 5> status_names{"done", "there", "failed", "exhausted",
+                                                   "refused"};
+
+/// What a process is held to.
+std::string out_of_memory() {
+  struct rlimit most {};
+  ::getrlimit(RLIMIT_DATA, &most);
+  return fmt::format("it needs more memory than the {} MB of its process. Shorter shards "
+                     "(--per-shard, in a new folder) take less; fewer --workers, or --memory-mb, "
+                     "give each more.",
+                     most.rlim_cur / 1'000'000);
+}
 
 /// Computes, writes and names the file.
 Result<void> fill(const JobFolder &folder, jobs::RangedJob &job, const jobs::Monitor &monitor,
@@ -81,6 +95,14 @@ Result<void> check_same_job(const JobFolder &folder, const jobs::RangedJob &job)
               {(folder.path() / "job.json").string()});
 }
 
+void hold_to_memory(std::size_t megabytes) {
+  const std::size_t wanted = 1'000'000 * (megabytes > 0 ? megabytes : memory_here_mb());
+  struct rlimit most {};
+  ::getrlimit(RLIMIT_DATA, &most);
+  most.rlim_cur = std::min<rlim_t>(most.rlim_max, wanted);
+  ::setrlimit(RLIMIT_DATA, &most);
+}
+
 ShardRecord do_shard(const JobFolder &folder, jobs::RangedJob &job, std::size_t index,
                      const jobs::Monitor &monitor) {
   ShardRecord out;
@@ -96,7 +118,9 @@ ShardRecord do_shard(const JobFolder &folder, jobs::RangedJob &job, std::size_t 
   try {
     done = fill(folder, job, monitor, out);
   } catch (const std::bad_alloc &) {
-    done = fail(ErrorCode::Device, "out of memory; ask for smaller shards with --per-shard");
+    out.status = ShardRecord::Status::Exhausted;
+    out.code = static_cast<int>(ErrorCode::Device);
+    out.message = out_of_memory();
   } catch (const Failure &lost) { // a card: the worker lives on and says so
     done = tl::unexpected(lost.error());
   }

@@ -1,24 +1,21 @@
 #include <umov/scale/status.h>
 
-#include <filesystem>
 #include <fmt/format.h>
 #include <umov/scale/lease.h>
 
 namespace umov::scale {
 
 Result<JobStatus> status_of(const JobFolder &folder) {
-  UMOV_ASSIGN(there, folder.shards());
+  UMOV_ASSIGN(there, folder.shards(true));
   JobStatus out;
   out.shards = folder.lock().shards();
   out.done = there.size();
   out.total = folder.lock().total;
   out.unit = folder.lock().unit;
   out.failed = folder.failed();
-  std::error_code unknown;
   for (const auto &[index, files] : there)
     for (const Shard &shard : files)
-      if (const auto size = std::filesystem::file_size(folder.file_of(shard), unknown); !unknown)
-        out.bytes += size;
+      out.bytes += shard.bytes;
   out.holders = lease_holders(folder.path());
   return out;
 }

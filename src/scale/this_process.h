@@ -1,6 +1,7 @@
 #pragma once
-// Private: who works here, and how much of the processor it has used.
+// Private: who works here, how much of the processor it has used, and how much memory it may.
 
+#include <cstddef>
 #include <string>
 
 namespace umov::scale {
@@ -9,5 +10,8 @@ namespace umov::scale {
 std::string this_host();
 /// CPU seconds of this process, all threads.
 double cpu_seconds();
+/// Megabytes that processes started here may have together: nine tenths of what the machine has or
+/// its control groups (of a container or a batch system) allow.
+std::size_t memory_here_mb();
 
 } // namespace umov::scale

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from conftest import ROOT, UMOV
+from conftest import ROOT, UMOV, read_csv
 
 SITE = ("-s", "maui", "--start", "2018-01-21T00:00:00Z", "--stop", "2018-01-21T12:00:00Z")
 
@@ -325,6 +325,55 @@ def test_a_folder_of_something_else_is_left_alone(umov, scenario, tmp_path):
     (tmp_path / "thesis/chapter.tex").write_text("")
     assert umov("scale", "run", "thesis", *signature_of(scenario)).code == 6
     assert [path.name for path in (tmp_path / "thesis").iterdir()] == ["chapter.tex"]
+
+
+REDUCTIONS = ("log-histogram:intensity:1e-3:10:7", "histogram:q_scat:-0.5:0.5:4:band", "most:intensity:5", "least:phase_angle:3:band")
+
+
+def kept(rows):
+    """What is to be kept of the rows of the plain table, by Python alone."""
+    bands = list(dict.fromkeys(row["band"] for row in rows))
+    out = {"log_histogram_intensity": [], "histogram_q_scat": [], "most_intensity": [], "least_phase_angle": []}
+    for band in bands:
+        mine = [row for row in rows if row["band"] == band]
+        for name, column, low, high, edges in (
+                ("log_histogram_intensity", "intensity", 1e-3, 10, [1e-3 * 1e4 ** (k / 7) for k in range(7)] + [10]),
+                ("histogram_q_scat", "q_scat", -0.5, 0.5, [-0.5, -0.25, 0, 0.25, 0.5])):
+            values = [float(row[column]) for row in mine if row[column]]
+            counts = [sum(a <= value < b for value in values) for a, b in zip(edges, edges[1:])]
+            counts += [sum(value < low for value in values), sum(value >= high for value in values), len(mine) - len(values)]
+            out[name] += [(band, count) for count in counts]
+        out["most_intensity"] += sorted(mine, key=lambda row: -float(row["intensity"]))[:5]
+        out["least_phase_angle"] += sorted(mine, key=lambda row: float(row["phase_angle"]))[:3]
+    return out
+
+
+@pytest.mark.parametrize("per_shard", [400, 123, 17])
+def test_what_is_kept_of_rows_is_that_of_the_plain_table(umov, scenario, tmp_path, per_shard):
+    """Histograms and extremes, however the job is cut; some poses are dark, and have no q."""
+    command = signature_of(scenario)
+    plain(umov, command, "plain.csv")
+    words = [word for text in REDUCTIONS for word in ("--reduce", text)]
+    done = umov("scale", "run", *words, "--per-shard", per_shard, "job", *command)
+    assert done.code == 0, done.err
+    expected = kept(read_csv(tmp_path / "plain.csv"))
+    for name, rows in expected.items():
+        assert umov("scale", "merge", "job", "--table", name, "-o", f"{name}.csv").code == 0
+        got = read_csv(tmp_path / f"{name}.csv")
+        assert [(row["band"], int(row["count"])) for row in got] == rows if "histogram" in name else got == rows
+    again = umov("scale", "run", "job", *command)
+    assert again.code == 3 and "reduced to" in again.err, again.err
+
+
+@pytest.mark.parametrize("text,said", [
+    ("mean:intensity", "no such reduction"), ("histogram:intensity:1:0:5", "LOW < HIGH"), ("log-histogram:intensity:0:1:5", "0 < LOW < HIGH"),
+    ("histogram:intensity:0:1", "a number of bins"), ("most:intensity:0", "from 1 to a million"), ("most:brightness:5", "there are pose, band"),
+    ("most:band:5", "no column of numbers"), ("most:intensity:5:sun_x", "whole numbers was expected"),
+])
+def test_reductions_that_are_none_are_refused_before_anything_is_made(umov, scenario, tmp_path, text, said):
+    done = umov("scale", "run", "--reduce", text, "job", *signature_of(scenario))
+    assert done.code == 2 and said in done.err, done.err
+    assert not (tmp_path / "job").exists()
 
 
 def test_too_much_asks_first(umov, scenario, tmp_path):

@@ -80,6 +80,7 @@ class Place:
         report = self.cache / "count.txt"
         env = {"LD_PRELOAD": str(self.shim), "UMOV_FAULT_UNDER": str(under or self.folder),
                "UMOV_FAULT_COUNT": str(report)}
+        report.unlink(missing_ok=True)
         done = self.umov(*arguments, env=env)
         assert done.code == 0, done.err
         return int(dict(line.split() for line in report.read_text().splitlines())[call])

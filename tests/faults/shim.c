@@ -5,7 +5,10 @@
  *                          rename, open (for writing), mkdir, read, thread, clock (set back by a day)
  *                          ERRNO below 0: that signal is sent instead, before the call
  * UMOV_FAULT_UNDER         prefix of the names of the files that are meant
- * UMOV_FAULT_COUNT=FILE    the numbers of all calls are written to FILE at the end
+ * UMOV_FAULT_COUNT=FILE    the numbers of all calls are added to FILE at the end of each process
+ * UMOV_POISON=3:crash,7:hang,9:memory
+ *                          the process that begins a file of rows of that shard crashes, never ends
+ *                          it, or has taken all memory that it can get
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -48,7 +51,7 @@ __attribute__((constructor)) static void start(void) {
 
 __attribute__((destructor)) static void tell(void) {
   const char *file = getenv("UMOV_FAULT_COUNT");
-  FILE *out = file ? fopen(file, "w") : NULL;
+  FILE *out = file ? fopen(file, "a") : NULL;
   if (!out)
     return;
   for (int k = 0; k < KINDS; ++k)
@@ -66,6 +69,29 @@ static int fails(int what) {
   }
   errno = code;
   return 1;
+}
+/* "/somewhere/tmp/00000007.rows.part-...": number and deed as UMOV_POISON has them. */
+static void poison(const char *path) {
+  const char *deeds = getenv("UMOV_POISON"), *name = strstr(path, "/tmp/0");
+  int length = 0;
+  long index = -1;
+  if (!deeds || !name || sscanf(name, "/tmp/%8ld.rows%n", &index, &length) != 1 || length == 0)
+    return;
+  char wanted[32];
+  snprintf(wanted, sizeof wanted, ",%ld:", index);
+  char all[512];
+  snprintf(all, sizeof all, ",%s", deeds);
+  const char *deed = strstr(all, wanted);
+  if (!deed)
+    return;
+  deed += strlen(wanted);
+  if (!strncmp(deed, "crash", 5))
+    kill(getpid(), SIGSEGV);
+  while (!strncmp(deed, "hang", 4))
+    pause();
+  for (size_t size = strncmp(deed, "memory", 6) ? 0 : 16 << 20; size >= 16; size /= 16)
+    for (void *block = malloc(size); block; block = malloc(size))
+      memset(block, 1, size);
 }
 static int is_meant(const char *name) { return strncmp(name, under, strlen(under)) == 0; }
 static int is_meant_fd(int fd) {
@@ -125,6 +151,8 @@ int mkdir(const char *path, mode_t mode) { return is_meant_at(path) && fails(MKD
     va_start(rest, flags);                                                                                            \
     const mode_t mode = va_arg(rest, mode_t);                                                                         \
     va_end(rest);                                                                                                     \
+    if ((flags & O_ACCMODE) != O_RDONLY)                                                                              \
+      poison(path);                                                                                                   \
     if ((flags & O_ACCMODE) != O_RDONLY && is_meant_at(path) && fails(OPEN))                                          \
       return -1;                                                                                                      \
     return REAL(name)(path, flags, mode);                                                                             \

@@ -12,6 +12,8 @@ namespace umov::jobs {
 struct Monitor {
   /// What is being done, and how much of it: "poses", 1024, 5000.
   std::function<void(const std::string &what, std::size_t done, std::size_t total)> progress;
+  /// How many seconds are left, from a job that knows better than the rate of `progress`.
+  std::function<void(double seconds)> left;
   /// A line of the log.
   std::function<void(const std::string &text)> remark;
   /// Set to true from any thread to have the job stop soon, with what is complete kept.
@@ -31,6 +33,11 @@ struct Monitor {
   void advance(const std::string &what, std::size_t done, std::size_t total) const {
     if (progress)
       progress(what, done, total);
+  }
+  /// What is left, if anybody listens.
+  void tell_left(double seconds) const {
+    if (left)
+      left(seconds);
   }
   /// The job is to stop soon.
   [[nodiscard]] bool is_cancelled() const { return cancel != nullptr && *cancel; }

@@ -55,6 +55,9 @@ public:
   [[nodiscard]] virtual std::string nothing() const { return ""; }
   /// Column of the first table with the problem of each row that has no answer; "": all have one.
   [[nodiscard]] virtual std::string problems() const { return ""; }
+  /// Its tables are what is kept of the rows of a range (umov/scale/reduction.h): as large for a
+  /// short one as for a long one, and put together by more than their order.
+  [[nodiscard]] virtual bool is_reduced() const { return false; }
   /// The rows of a range, at least one block of each table (without rows if there are none).
   /// Interrupted after a stop.
   virtual Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,

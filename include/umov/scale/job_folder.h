@@ -15,6 +15,7 @@ struct Rate {
   double cpu_s = 0, bytes = 0;
   double setup_cpu_s = 0; ///< of a process before its first row
   double once_cpu_s = 0;  ///< of the whole job: masks, which all processes read
+  double shard_bytes = 0; ///< of each shard besides: of what is kept of its rows
 
   /// What a shard of so many may take, with all that is done once.
   [[nodiscard]] double at_most_s(std::size_t per_shard) const {
@@ -34,9 +35,10 @@ struct JobLock {
   std::vector<std::size_t> layout;
   std::vector<std::string> tables;
   std::string order;
-  std::string nothing, problems;     ///< RangedJob::nothing and RangedJob::problems
-  std::vector<std::string> warnings; ///< RangedJob::warnings
-  std::vector<jobs::Tally> tallies;  ///< RangedJob::tallies
+  std::vector<std::string> reductions; ///< what is kept of the rows; empty: all of them
+  std::string nothing, problems;       ///< RangedJob::nothing and RangedJob::problems
+  std::vector<std::string> warnings;   ///< RangedJob::warnings
+  std::vector<jobs::Tally> tallies;    ///< RangedJob::tallies
   Rate rate;
 
   /// What the bytes of a shard depend on, as 16 hexadecimal digits.
@@ -56,8 +58,9 @@ std::string first_difference(const std::string &was, const std::string &is);
 /// A finished shard.
 struct Shard {
   std::size_t index = 0;
-  std::string name;   ///< of its file, without folder
-  std::string sha256; ///< the first 32 digits
+  std::string name;      ///< of its file, without folder
+  std::string sha256;    ///< the first 32 digits
+  std::size_t bytes = 0; ///< of its file, where they were asked for
 };
 
 /// Shards by index; several where their bytes differ.
@@ -91,8 +94,8 @@ public:
   [[nodiscard]] const JobLock &lock() const { return lock_; }
   /// JobLock::key of that.
   [[nodiscard]] const std::string &key() const { return key_; }
-  /// What is there. Names of other jobs are not counted.
-  [[nodiscard]] Result<Shards> shards() const;
+  /// What is there, and how large where that is asked for. Names of other jobs are not counted.
+  [[nodiscard]] Result<Shards> shards(bool with_bytes = false) const;
   /// Of the shard, if it is there.
   [[nodiscard]] std::optional<Shard> find(std::size_t index) const;
   /// Where the file of a shard stands.

@@ -15,6 +15,8 @@ struct RunSettings {
   jobs::JobPart part;      ///< of the shards
   bool joins = false;      ///< beside others that are at work in the folder
   double timeout_s = 0;    ///< of a shard; 0: ten times what is predicted, at least a minute
+  /// Of each process; 0: its share of nine tenths of what is here.
+  std::size_t memory_mb = 0;
 };
 
 /// What came of it.
@@ -27,9 +29,10 @@ struct RunTally {
   std::vector<FailedShard> failures;
 };
 
-/// Does what is missing. A shard that ends its process is tried three times, one that hangs twice;
-/// what is wrong with its input is wrong for good and told; a full disk ends it all (Device).
-/// Interrupted after a stop, when the shards in hand are done or half a minute is over.
+/// Does what is missing. A shard that ends its process or runs out of memory is tried three times,
+/// one that hangs twice; what is wrong with its input is wrong for good and told; a full disk ends
+/// it all (Device). Interrupted after a stop, when the shards in hand are done or half a minute is
+/// over.
 Result<RunTally> run_job(const JobFolder &folder, const RunSettings &settings,
                          const jobs::Monitor &monitor);
 

@@ -15,7 +15,8 @@ struct ShardRecord {
     Done,
     There, ///< somebody else had done it
     Failed,
-    Refused ///< the process cannot do any shard of the job
+    Exhausted, ///< out of memory: the process ends, another one may try
+    Refused    ///< the process cannot do any shard of the job
   };
   Status status = Status::Done;
   std::size_t index = 0;
@@ -36,11 +37,15 @@ Result<void> check_same_job(const JobFolder &folder, const jobs::RangedJob &job)
 ShardRecord do_shard(const JobFolder &folder, jobs::RangedJob &job, std::size_t index,
                      const jobs::Monitor &monitor);
 
+/// Holds this process to so many megabytes of its own; 0: nine tenths of what is here. A shard that
+/// wants more is Exhausted, and neither the others nor the machine suffer.
+void hold_to_memory(std::size_t megabytes);
+
 /// Begins to listen to the standard input; true once it has ended, with the parent or at its will.
 const std::atomic<bool> &parent_has_left();
 
 /// Takes indices line by line from the standard input until its end, and prints a record for each:
-/// the parent's death ends the process, whatever it is at.
+/// the parent's death ends the process, whatever it is at, and so does a shard that is Exhausted.
 Result<void> serve_shards(const JobFolder &folder, jobs::RangedJob &job);
 /// What is printed instead where no shard can be done.
 void refuse_shards(const Error &why);

@@ -1,0 +1,480 @@
+#include <umov/scale/reduction.h>
+
+#include "scale/picked_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <umov/core/text.h>
+#include <utility>
+
+namespace umov::scale {
+namespace {
+
+constexpr std::size_t most_bins = 1'000'000, most_rows = 1'000'000;
+
+enum class Kind { Histogram, LogHistogram, Most, Least };
+constexpr std::array<const char *, 4> kind_names{"histogram", "log-histogram", "most", "least"};
+
+/// What a text asks for.
+struct Wanted {
+  Kind kind = Kind::Histogram;
+  std::string column;
+  double low = 0, high = 0;
+  std::size_t count = 0;
+  std::optional<std::vector<std::string>> by;
+};
+
+std::vector<std::string> split(const std::string &text, char at) {
+  std::vector<std::string> out;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(at, begin);
+    out.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+  }
+  return out;
+}
+
+Result<Wanted> read_wanted(const std::string &text) {
+  const auto refuse = [&text](const std::string &why) {
+    return fail(ErrorCode::Usage,
+                fmt::format("--reduce {}: {}. Expected: histogram:COLUMN:LOW:HIGH:BINS, the same "
+                            "with log-histogram, most:COLUMN:COUNT or least:COLUMN:COUNT, and "
+                            ":COLUMN behind it for one of each of its values; such as "
+                            "log-histogram:intensity:1e-6:100:80",
+                            printable(text), why));
+  };
+  const std::vector<std::string> words = split(text, ':');
+  const auto name = std::ranges::find(kind_names, words.front());
+  if (name == kind_names.end())
+    return refuse("no such reduction");
+  Wanted out;
+  out.kind = static_cast<Kind>(name - kind_names.begin());
+  const bool is_histogram = out.kind == Kind::Histogram || out.kind == Kind::LogHistogram;
+  const std::size_t least = is_histogram ? 5 : 3;
+  if (words.size() < least || words.size() > least + 1 ||
+      std::ranges::any_of(words, [](const std::string &word) { return word.empty(); }))
+    return refuse(is_histogram ? "a column, two numbers and a number of bins"
+                               : "a column and a number of rows");
+  out.column = words[1];
+  const std::string &count = words[least - 1];
+  const auto end = count.data() + count.size();
+  if (std::from_chars(count.data(), end, out.count).ptr != end || out.count == 0 ||
+      out.count > (is_histogram ? most_bins : most_rows))
+    return refuse("\"" + printable(count) + "\" is no number from 1 to a million");
+  if (is_histogram) {
+    const auto low = parse_number(words[2]), high = parse_number(words[3]);
+    if (!low || !high || !(*low < *high) || (out.kind == Kind::LogHistogram && !(*low > 0)))
+      return refuse(out.kind == Kind::LogHistogram ? "0 < LOW < HIGH" : "LOW < HIGH");
+    out.low = *low, out.high = *high;
+  }
+  if (words.size() > least)
+    out.by = split(words[least], '+');
+  return out;
+}
+
+bool same_cell(const Cells &a, std::size_t i, const Cells &b, std::size_t k) {
+  return std::visit(
+      [&](const auto &cells) {
+        const auto *others = std::get_if<std::decay_t<decltype(cells)>>(&b);
+        return others != nullptr && cells[i] == (*others)[k];
+      },
+      a);
+}
+void push_cell(Cells &to, const Cells &from, std::size_t row) {
+  std::visit([&](auto &cells) {
+    cells.push_back(std::get<std::decay_t<decltype(cells)>>(from)[row]);
+  }, to);
+}
+Cells none_like(const Cells &cells) {
+  return std::visit([](const auto &like) -> Cells { return std::decay_t<decltype(like)>{}; }, cells);
+}
+
+/// Which rows belong together, in order of their first.
+class Groups {
+public:
+  explicit Groups(std::optional<std::vector<std::string>> by) : by_(std::move(by)) {}
+
+  /// Finds the columns in rows that are to be asked for. Usage for what they do not have.
+  Result<void> look_at(const Table &rows) {
+    if (!by_)
+      by_ = rows.find("band") != nullptr ? std::vector<std::string>{"band"}
+                                         : std::vector<std::string>{};
+    columns_.clear();
+    for (const std::string &name : *by_) {
+      UMOV_ASSIGN(column, column_of(rows, name));
+      if (std::holds_alternative<std::vector<double>>(column->cells))
+        return fail(ErrorCode::Usage,
+                    fmt::format("--reduce of each {}: it is a column of numbers with a fraction; "
+                                "one of texts or whole numbers was expected",
+                                printable(name)));
+      if (keys_.size() < by_->size())
+        keys_.push_back({column->name, column->unit, column->description, none_like(column->cells)});
+      columns_.push_back(&column->cells);
+    }
+    return {};
+  }
+  /// That of a row of the table that was looked at last.
+  std::size_t of(std::size_t row) {
+    // Rows of bands take turns, those of objects follow each other.
+    for (const std::size_t guess : {last_ + 1 < count_ ? last_ + 1 : 0, last_})
+      if (guess < count_ && is(guess, row))
+        return last_ = guess;
+    for (last_ = 0; last_ < count_; ++last_)
+      if (is(last_, row))
+        return last_;
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      push_cell(keys_[c].cells, *columns_[c], row);
+    return last_ = count_++;
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  /// Columns with the cells of each group, `times` over.
+  void add_to(Table &out, std::size_t times) const {
+    for (const Column &key : keys_) {
+      Cells cells = none_like(key.cells);
+      for (std::size_t g = 0; g < count_; ++g)
+        for (std::size_t k = 0; k < times; ++k)
+          push_cell(cells, key.cells, g);
+      out.add(key.name, key.unit, key.description, std::move(cells));
+    }
+  }
+  static Result<const Column *> column_of(const Table &rows, const std::string &name) {
+    if (const Column *column = rows.find(name))
+      return column;
+    std::vector<std::string> known;
+    for (const Column &column : rows.columns())
+      known.push_back(column.name);
+    return fail(ErrorCode::Usage, fmt::format("--reduce: the rows have no column {}; there are {}",
+                                              printable(name), fmt::join(known, ", ")));
+  }
+
+private:
+  [[nodiscard]] bool is(std::size_t group, std::size_t row) const {
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      if (!same_cell(keys_[c].cells, group, *columns_[c], row))
+        return false;
+    return true;
+  }
+  std::optional<std::vector<std::string>> by_;
+  std::vector<Column> keys_;           ///< cells by group
+  std::vector<const Cells *> columns_; ///< of the rows at hand
+  std::size_t count_ = 0, last_ = 0;
+};
+
+/// The cells of a column of numbers.
+Result<std::vector<double>> numbers_of(const Table &rows, const std::string &name) {
+  UMOV_ASSIGN(column, Groups::column_of(rows, name));
+  if (const auto *numbers = std::get_if<std::vector<double>>(&column->cells))
+    return *numbers;
+  if (const auto *counts = std::get_if<std::vector<std::int64_t>>(&column->cells))
+    return std::vector<double>(counts->begin(), counts->end());
+  return fail(ErrorCode::Usage,
+              fmt::format("--reduce: column {} is no column of numbers", printable(name)));
+}
+
+/// Once, though what is kept is put together of what was.
+void note_reduction(Table &table, const std::string &text) {
+  if (std::ranges::find(table.notes(), std::pair{std::string("reduction"), text}) ==
+      table.notes().end())
+    table.note("reduction", text);
+}
+
+class Histogram final : public Reducer {
+public:
+  Histogram(Wanted wanted, std::string text)
+      : wanted_(std::move(wanted)), text_(std::move(text)), groups_(wanted_.by) {
+    const auto bins = static_cast<double>(wanted_.count);
+    for (std::size_t k = 0; k <= wanted_.count; ++k) {
+      const double part = static_cast<double>(k) / bins;
+      edges_.push_back(is_log() ? wanted_.low * std::pow(wanted_.high / wanted_.low, part)
+                                : wanted_.low + (wanted_.high - wanted_.low) * part);
+    }
+    edges_.back() = wanted_.high;
+  }
+  Result<void> take(const Table &rows) override {
+    UMOV_TRY(begin(rows, wanted_.column));
+    UMOV_ASSIGN(values, numbers_of(rows, wanted_.column));
+    for (std::size_t row = 0; row < values.size(); ++row)
+      ++counts_of(row)[bin_of(values[row])];
+    return {};
+  }
+  Result<void> join(const Table &kept) override {
+    UMOV_TRY(begin(kept, "low"));
+    UMOV_ASSIGN(column, Groups::column_of(kept, "count"));
+    const auto *counts = std::get_if<std::vector<std::int64_t>>(&column->cells);
+    if (counts == nullptr || counts->size() % rows_of_group() != 0)
+      return fail(ErrorCode::BadInput, "what was kept of a shard is no " + text_);
+    for (std::size_t row = 0; row < counts->size(); row += rows_of_group()) {
+      auto &all = counts_of(row);
+      for (std::size_t k = 0; k < all.size(); ++k)
+        all[k] += (*counts)[row + k];
+    }
+    return {};
+  }
+  [[nodiscard]] Table table() override {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> low, high;
+    std::vector<std::int64_t> counts;
+    for (const auto &of_group : counts_) {
+      low.insert(low.end(), edges_.begin(), edges_.end() - 1);
+      high.insert(high.end(), edges_.begin() + 1, edges_.end());
+      low.insert(low.end(), {nan, wanted_.high, nan});
+      high.insert(high.end(), {wanted_.low, nan, nan});
+      counts.insert(counts.end(), of_group.begin(), of_group.end());
+    }
+    Table out;
+    for (const auto &[key, value] : about_.notes())
+      out.note(key, value);
+    note_reduction(out, text_);
+    groups_.add_to(out, rows_of_group());
+    out.add("low", unit_, "least value of the bin; not defined: all below `high`", std::move(low));
+    out.add("high", unit_,
+            "end of the bin, which belongs to the next; not defined: all from `low` on; both not "
+            "defined: rows without a value",
+            std::move(high));
+    out.add("count", "", "rows with a value in the bin", std::move(counts));
+    return out;
+  }
+
+private:
+  [[nodiscard]] bool is_log() const { return wanted_.kind == Kind::LogHistogram; }
+  /// Bins, those below, those above, those without a value.
+  [[nodiscard]] std::size_t rows_of_group() const { return wanted_.count + 3; }
+  Result<void> begin(const Table &rows, const std::string &column) {
+    UMOV_TRY(groups_.look_at(rows));
+    if (!std::exchange(has_begun_, true)) {
+      UMOV_ASSIGN(values, Groups::column_of(rows, column));
+      unit_ = values->unit;
+      about_ = rows.part(0, 0);
+    }
+    return {};
+  }
+  std::vector<std::int64_t> &counts_of(std::size_t row) {
+    const std::size_t group = groups_.of(row);
+    if (group == counts_.size())
+      counts_.emplace_back(rows_of_group());
+    return counts_[group];
+  }
+  /// The edges decide, whatever the last digit of a logarithm is.
+  [[nodiscard]] std::size_t bin_of(double value) const {
+    if (std::isnan(value))
+      return wanted_.count + 2;
+    if (value < wanted_.low)
+      return wanted_.count;
+    if (value >= wanted_.high)
+      return wanted_.count + 1;
+    const double part = is_log() ? std::log(value / wanted_.low) / std::log(wanted_.high / wanted_.low)
+                                 : (value - wanted_.low) / (wanted_.high - wanted_.low);
+    auto bin = std::min(static_cast<std::size_t>(part * static_cast<double>(wanted_.count)),
+                        wanted_.count - 1);
+    while (value < edges_[bin])
+      --bin;
+    while (value >= edges_[bin + 1])
+      ++bin;
+    return bin;
+  }
+  const Wanted wanted_;
+  const std::string text_;
+  std::vector<double> edges_;
+  Groups groups_;
+  std::vector<std::vector<std::int64_t>> counts_; ///< by group
+  bool has_begun_ = false;
+  std::string unit_;
+  Table about_;
+};
+
+class Extremes final : public Reducer {
+public:
+  Extremes(Wanted wanted, std::string text)
+      : wanted_(std::move(wanted)), text_(std::move(text)), groups_(wanted_.by) {}
+
+  Result<void> take(const Table &rows) override {
+    UMOV_TRY(groups_.look_at(rows));
+    UMOV_ASSIGN(values, numbers_of(rows, wanted_.column));
+    if (!std::exchange(has_begun_, true))
+      about_ = rows.part(0, 0);
+    std::vector<std::vector<std::size_t>> wanted(kept_.size());
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (std::isnan(values[row]))
+        continue;
+      const std::size_t group = groups_.of(row);
+      if (group >= kept_.size())
+        kept_.resize(group + 1);
+      if (group >= wanted.size())
+        wanted.resize(group + 1);
+      if (const auto &bar = kept_[group].bar; !bar || is_before(values[row], *bar))
+        wanted[group].push_back(row);
+    }
+    for (std::size_t group = 0; group < wanted.size(); ++group)
+      if (!wanted[group].empty())
+        add(kept_[group], rows, values, std::move(wanted[group]));
+    return {};
+  }
+  Result<void> join(const Table &kept) override { return take(kept); }
+  [[nodiscard]] Table table() override {
+    Table out;
+    for (Kept &one : kept_) {
+      cut(one);
+      out.append(Table(one.rows));
+    }
+    if (out.rows() == 0)
+      out = about_;
+    note_reduction(out, text_);
+    return out;
+  }
+
+private:
+  struct Kept {
+    Table rows;
+    std::vector<double> values;
+    std::optional<double> bar; ///< what does not come before it is not kept
+  };
+  [[nodiscard]] bool is_before(double a, double b) const {
+    return wanted_.kind == Kind::Most ? a > b : a < b;
+  }
+  /// The first by value, earlier rows first where it is the same.
+  void order(std::vector<std::size_t> &rows, const std::vector<double> &values) const {
+    std::ranges::stable_sort(
+        rows, [&](std::size_t a, std::size_t b) { return is_before(values[a], values[b]); });
+    rows.resize(std::min(rows.size(), wanted_.count));
+  }
+  void add(Kept &to, const Table &rows, const std::vector<double> &values,
+           std::vector<std::size_t> &&wanted) const {
+    order(wanted, values);
+    for (const std::size_t row : wanted)
+      to.values.push_back(values[row]);
+    to.rows.append(picked(rows, wanted));
+    if (to.values.size() > 2 * wanted_.count)
+      cut(to);
+  }
+  void cut(Kept &one) const {
+    std::vector<std::size_t> rows(one.values.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    order(rows, one.values);
+    if (rows.empty())
+      return;
+    one.rows = picked(one.rows, rows);
+    std::vector<double> values;
+    for (const std::size_t row : rows)
+      values.push_back(one.values[row]);
+    one.values = std::move(values);
+    if (one.values.size() == wanted_.count)
+      one.bar = one.values.back();
+  }
+  const Wanted wanted_;
+  const std::string text_;
+  Groups groups_;
+  std::vector<Kept> kept_; ///< by group
+  bool has_begun_ = false;
+  Table about_;
+};
+
+/// Hands the rows of the first table to all who keep something of them.
+class KeptRows final : public jobs::RangeSink {
+public:
+  KeptRows(std::vector<std::unique_ptr<Reducer>> &to, std::string without, jobs::RangeSink &sink)
+      : to_(to), without_(std::move(without)), sink_(sink) {}
+  Result<void> add(std::size_t table, Table &&rows) override {
+    if (table != 0)
+      return {};
+    rows.remove(without_);
+    for (const auto &one : to_)
+      UMOV_TRY(one->take(rows));
+    return {};
+  }
+  void tally(const std::vector<std::size_t> &counts) override { sink_.tally(counts); }
+
+private:
+  std::vector<std::unique_ptr<Reducer>> &to_;
+  const std::string without_;
+  jobs::RangeSink &sink_;
+};
+
+class Reduced final : public jobs::RangedJob {
+public:
+  Reduced(std::unique_ptr<jobs::RangedJob> job, std::vector<std::string> texts)
+      : job_(std::move(job)), texts_(std::move(texts)) {}
+  [[nodiscard]] std::string unit() const override { return job_->unit(); }
+  [[nodiscard]] std::size_t total() const override { return job_->total(); }
+  [[nodiscard]] std::size_t grain() const override { return job_->grain(); }
+  [[nodiscard]] bool is_reduced() const override { return true; }
+  [[nodiscard]] std::string identity() const override {
+    return job_->identity() + fmt::format("reduced to {}\n", fmt::join(texts_, " and "));
+  }
+  [[nodiscard]] std::vector<std::size_t> layout() const override { return job_->layout(); }
+  [[nodiscard]] std::vector<std::string> tables() const override {
+    std::vector<std::string> out;
+    for (const std::string &text : texts_)
+      out.push_back(reduced_name(text));
+    return out;
+  }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return job_->warnings(); }
+  [[nodiscard]] std::vector<jobs::Tally> tallies() const override { return job_->tallies(); }
+  Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &monitor,
+                    Diagnostics &diagnostics) override {
+    std::vector<std::unique_ptr<Reducer>> all;
+    for (const std::string &text : texts_) {
+      UMOV_ASSIGN(one, make_reducer(text));
+      all.push_back(std::move(one));
+    }
+    KeptRows kept(all, job_->order(), sink);
+    UMOV_TRY(job_->rows(range, kept, monitor, diagnostics));
+    for (std::size_t k = 0; k < all.size(); ++k)
+      UMOV_TRY(sink.add(k, all[k]->table()));
+    return {};
+  }
+  [[nodiscard]] Result<void> keep() override { return job_->keep(); }
+
+private:
+  std::unique_ptr<jobs::RangedJob> job_;
+  std::vector<std::string> texts_;
+};
+
+} // namespace
+
+Result<std::unique_ptr<Reducer>> make_reducer(const std::string &text) {
+  UMOV_ASSIGN(wanted, read_wanted(text));
+  if (wanted.kind == Kind::Histogram || wanted.kind == Kind::LogHistogram)
+    return std::make_unique<Histogram>(std::move(wanted), text);
+  return std::make_unique<Extremes>(std::move(wanted), text);
+}
+
+std::string reduced_name(const std::string &text) {
+  const std::size_t kind = text.find(':'), column = text.find(':', kind + 1);
+  std::string out = text.substr(0, column);
+  std::ranges::replace_if(out, [](char c) { return c == ':' || c == '-'; }, '_');
+  return out;
+}
+
+Result<void> check_reductions(const std::vector<std::string> &texts) {
+  std::set<std::string> names;
+  for (const std::string &text : texts) {
+    UMOV_TRY(read_wanted(text));
+    if (!names.insert(reduced_name(text)).second)
+      return fail(ErrorCode::Usage, fmt::format("--reduce {}: there is one of that kind and column "
+                                                "already; another job takes the other",
+                                                printable(text)));
+  }
+  return {};
+}
+
+Result<std::unique_ptr<jobs::RangedJob>> reduced_job(std::unique_ptr<jobs::RangedJob> job,
+                                                     const std::vector<std::string> &texts) {
+  UMOV_TRY(check_reductions(texts));
+  if (texts.empty())
+    return std::move(job);
+  if (!job->problems().empty())
+    return fail(ErrorCode::Usage,
+                "--reduce: the rows of this verb are answers of curves, which are few and kept "
+                "whole. Leave it out.");
+  return std::make_unique<Reduced>(std::move(job), texts);
+}
+
+} // namespace umov::scale

@@ -1,0 +1,123 @@
+// What is kept of rows: counted by hand, and the same however they come.
+
+#include <umov/scale/reduction.h>
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace umov::scale {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Table rows(std::vector<double> values, std::vector<std::string> bands) {
+  std::vector<std::int64_t> numbers;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    numbers.push_back(static_cast<std::int64_t>(k));
+  Table out;
+  out.note("frame", "body");
+  out.add("pose", "", "number", std::move(numbers));
+  out.add("band", "", "band", std::move(bands));
+  out.add("intensity", "m2 / sr", "light", std::move(values));
+  return out;
+}
+Table some_rows() {
+  return rows({0.5, 3, 1, nan, 10, 2, -1, 4, 1, 3}, {"B", "V", "B", "V", "B", "V", "B", "V", "B", "V"});
+}
+
+template <class T> std::vector<T> cells(const Table &table, const char *name) {
+  return std::get<std::vector<T>>(table.find(name)->cells);
+}
+
+/// Of rows that come in one piece, and of two parts whose tables are put together.
+Table kept(const std::string &text, const Table &all, std::size_t cut) {
+  const auto one = make_reducer(text), other = make_reducer(text), both = make_reducer(text);
+  EXPECT_TRUE((*one)->take(all.part(0, cut)));
+  EXPECT_TRUE((*other)->take(all.part(cut, all.rows() - cut)));
+  EXPECT_TRUE((*both)->join((*one)->table()));
+  EXPECT_TRUE((*both)->join((*other)->table()));
+  return (*both)->table();
+}
+
+TEST(Reductions, CountRowsInBinsOfEachBand) {
+  // Bins [1, 2), [2, 3), [3, 4); below, from 4 on, without a value.
+  const std::vector<std::int64_t> expected{2, 0, 0, 2, 1, 0, /* V */ 0, 1, 2, 0, 1, 1};
+  for (const std::size_t cut : {0, 3, 10}) {
+    const Table table = kept("histogram:intensity:1:4:3", some_rows(), cut);
+    EXPECT_EQ(cells<std::int64_t>(table, "count"), expected);
+    EXPECT_EQ(table.text("band", 0), "B");
+    EXPECT_EQ(table.text("band", 11), "V");
+    EXPECT_EQ(table.find("low")->unit, "m2 / sr");
+    EXPECT_EQ(table.number("low", 2), 3);
+    EXPECT_EQ(table.number("high", 3), 1); // those below
+    EXPECT_TRUE(std::isnan(table.number("low", 3)) && std::isnan(table.number("high", 4)));
+    EXPECT_EQ(std::ranges::count(table.notes(), std::string("reduction"),
+                                 &std::pair<std::string, std::string>::first),
+              1);
+  }
+}
+
+TEST(Reductions, PutValuesOnAnEdgeIntoTheBinThatItBegins) {
+  const auto reducer = make_reducer("log-histogram:intensity:1e-3:1e3:6");
+  const Table powers = rows({1e-3, 1e-2, 1e-1, 1, 10, 100, 1e3}, std::vector<std::string>(7, "V"));
+  ASSERT_TRUE((*reducer)->take(powers));
+  const Table table = (*reducer)->table();
+  const auto edges = cells<double>(table, "low");
+  // pow() need not give powers of ten to the last digit: what counts are the edges that are told.
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_NEAR(edges[k], std::pow(10, static_cast<double>(k) - 3), 1e-12 * edges[k]);
+  const auto again = make_reducer("log-histogram:intensity:1e-3:1e3:6");
+  ASSERT_TRUE((*again)->take(rows({edges.begin(), edges.begin() + 6}, std::vector<std::string>(6, "V"))));
+  const auto counts = cells<std::int64_t>((*again)->table(), "count");
+  EXPECT_EQ(std::vector<std::int64_t>(counts.begin(), counts.begin() + 6),
+            std::vector<std::int64_t>(6, 1));
+}
+
+TEST(Reductions, KeepTheMostAndTheLeastWithEarlierRowsFirst) {
+  for (const std::size_t cut : {0, 1, 5, 9, 10}) {
+    const Table most = kept("most:intensity:2", some_rows(), cut);
+    EXPECT_EQ(cells<double>(most, "intensity"), (std::vector<double>{10, 1, 4, 3}));
+    EXPECT_EQ(cells<std::int64_t>(most, "pose"), (std::vector<std::int64_t>{4, 2, 7, 1}));
+    const Table least = kept("least:intensity:3:pose+band", some_rows(), cut);
+    EXPECT_EQ(least.rows(), 9u); // one of each pose; that without a value is none
+  }
+}
+
+TEST(Reductions, OfManyRowsAreWhatSortingThemGives) {
+  std::vector<double> values;
+  for (std::uint64_t k = 0; k < 20'000; ++k)
+    values.push_back(static_cast<double>((k * 2'654'435'761U) % 1009));
+  const Table all = rows(values, std::vector<std::string>(values.size(), "V"));
+  const auto reducer = make_reducer("most:intensity:50");
+  for (std::size_t at = 0; at < values.size(); at += 700)
+    ASSERT_TRUE((*reducer)->take(all.part(at, std::min<std::size_t>(700, values.size() - at))));
+  std::vector<std::size_t> order(values.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    order[k] = k;
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  const auto poses = cells<std::int64_t>((*reducer)->table(), "pose");
+  ASSERT_EQ(poses.size(), 50u);
+  for (std::size_t k = 0; k < 50; ++k)
+    EXPECT_EQ(poses[k], static_cast<std::int64_t>(order[k]));
+}
+
+TEST(Reductions, OfNoRowHaveTheirColumns) {
+  const auto most = make_reducer("most:intensity:2");
+  ASSERT_TRUE((*most)->take(some_rows().part(0, 0)));
+  EXPECT_EQ((*most)->table().columns().size(), 3u);
+  const auto histogram = make_reducer("histogram:intensity:0:1:2");
+  ASSERT_TRUE((*histogram)->take(some_rows().part(0, 0)));
+  EXPECT_EQ((*histogram)->table().rows(), 0u);
+  EXPECT_NE((*histogram)->table().find("band"), nullptr);
+}
+
+TEST(Reductions, ThatMeanOneTableTwiceAreRefused) {
+  EXPECT_EQ(reduced_name("log-histogram:q_scat:0:1:5"), "log_histogram_q_scat");
+  EXPECT_TRUE(check_reductions({"most:intensity:5", "least:intensity:5"}));
+  EXPECT_FALSE(check_reductions({"most:intensity:5", "most:intensity:6"}));
+}
+
+} // namespace
+} // namespace umov::scale
