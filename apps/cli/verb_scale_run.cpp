@@ -114,7 +114,7 @@ void add_scale_run(CLI::App &scale, const Exit &exit_with) {
       ->check(CLI::Range(0.1, 1e7));
   verb->add_option("--memory-mb", o->settings.memory_mb,
                    "Of each process; default: its share of nine tenths of what is here")
-      ->check(CLI::Range(1, 1'000'000'000));
+      ->check(CLI::Range(64, 1'000'000'000));
   verb->add_option("--cluster", o->cluster,
                    "local:N, or the address of a Dask scheduler; takes the Python package "
                    "umov[scale]");

@@ -6,11 +6,24 @@
 #include <csignal>
 #include <filesystem>
 #include <new>
+#include <type_traits>
 #include <umov/light/instruction_set.h>
 #include <umov/scale/shard_work.h>
 
 namespace umov::cli {
 namespace {
+
+/// A job that is too large to be made ready has no shard at all: who asks is to hear it, or would
+/// try each of them.
+template <class Make> std::invoke_result_t<Make> within_memory(const Make &make) {
+  try {
+    return make();
+  } catch (const std::bad_alloc &) {
+    return fail(ErrorCode::Device,
+                "the job needs more memory than its process may have: fewer --workers, or "
+                "--memory-mb, give each more");
+  }
+}
 
 /// The job of a folder, made ready where it was begun.
 Result<void> work(const std::string &path, const Common &common) {
@@ -33,21 +46,11 @@ Result<void> work(const std::string &path, const Common &common) {
   parts.reductions = lock.reductions;
   parts.monitor.cancel = &scale::parent_has_left();
   Diagnostics told_at_the_begin;
-  UMOV_ASSIGN(job, verb_in_parts(lock.verb, lock.arguments, parts, told_at_the_begin));
+  UMOV_ASSIGN(job, within_memory([&] {
+                return verb_in_parts(lock.verb, lock.arguments, parts, told_at_the_begin);
+              }));
   UMOV_TRY(scale::check_same_job(folder, *job));
   return scale::serve_shards(folder, *job);
-}
-
-/// A job that is too large to be made ready has no shard at all.
-Result<void> work_within_memory(const std::string &path, const Common &common) {
-  try {
-    return work(path, common);
-  } catch (const std::bad_alloc &) {
-    return fail(ErrorCode::Device,
-                "the job needs more memory than its process may have: fewer --workers, or "
-                "--memory-mb, give each more",
-                {path});
-  }
 }
 
 /// The exit code; who asks for shards hears why there are none.
@@ -71,13 +74,13 @@ void add_scale_worker(CLI::App &scale, const Exit &exit_with) {
   verb->add_option("folder", *folder, "Folder of the job")->required();
   verb->add_option("--memory-mb", *memory_mb,
                    "Of this process; default: nine tenths of what is here")
-      ->check(CLI::Range(1, 1'000'000'000));
+      ->check(CLI::Range(64, 1'000'000'000));
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
   verb->callback([=] {
     std::signal(SIGINT, SIG_IGN); // who started it says when it ends
     scale::hold_to_memory(*memory_mb);
-    exit_with(code_of(work_within_memory(*folder, *common)));
+    exit_with(code_of(work(*folder, *common)));
   });
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Poison among a thousand shards: what is told of it, whether all others are done, and how long they wait for it.
 
-    .deps/venv/bin/python bench/scale/poison.py [--objects 60] [--days 4] [--timeout-s 15] [--no-dask]
+    .deps/venv/bin/python bench/scale/poison.py [--objects 60] [--days 7] [--timeout-s 30] [--no-dask]
 
 Light curves of a catalogue, a pass a shard. One shard meets an input that is not what it was when the job began (its object has no
 pass: the lock is changed by hand), the process of a second crashes, that of a third hangs, that of a fourth takes all memory that it
@@ -105,8 +105,8 @@ def poisoned(name, command, folder, env, kinds):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--objects", type=int, default=60)
-    parser.add_argument("--days", type=int, default=4)
-    parser.add_argument("--timeout-s", type=float, default=15)
+    parser.add_argument("--days", type=int, default=7)
+    parser.add_argument("--timeout-s", type=float, default=30)
     parser.add_argument("--memory-mb", type=int, default=1000)
     parser.add_argument("--no-dask", action="store_true")
     given = parser.parse_args()

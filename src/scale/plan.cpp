@@ -7,26 +7,42 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <umov/core/text.h>
 #include <utility>
 #include <vector>
 
 namespace umov::scale {
 namespace {
 
-/// Rows that are counted and forgotten.
+/// Rows that are counted and forgotten, at the cost that keeping them has for the processor: they
+/// are copied and hashed.
 class Counted final : public jobs::RangeSink {
 public:
   Result<void> add(std::size_t, Table &&rows) override {
     for (const Column &column : rows.columns()) {
       const auto *texts = std::get_if<std::vector<std::string>>(&column.cells);
+      if (const auto *numbers = std::get_if<std::vector<double>>(&column.cells))
+        held_.append(reinterpret_cast<const char *>(numbers->data()),
+                     numbers->size() * sizeof(double));
       bytes += static_cast<double>(rows.rows()) * (texts != nullptr ? 4 : 8);
       if (texts != nullptr)
         for (const std::string &text : std::set<std::string>(texts->begin(), texts->end()))
           bytes += static_cast<double>(text.size() + 8);
     }
+    if (held_.size() > most_held)
+      hash();
     return {};
   }
+  void hash() {
+    (void)sha256_hex(held_);
+    held_.clear();
+  }
   double bytes = 0;
+
+private:
+  static constexpr std::size_t most_held = 64'000'000;
+  std::string held_;
 };
 
 /// The k-th of the points of van der Corput (1935) in base 2: however many, they lie evenly.
@@ -96,6 +112,8 @@ public:
     learns_ = learns_ && again.cpu_s < 0.95 * first.cpu_s;
     return again;
   }
+  /// The first time still costs more.
+  [[nodiscard]] bool learns() const { return learns_; }
   /// CPU seconds so far.
   [[nodiscard]] double spent() const { return spent_; }
   [[nodiscard]] double learnt() const {
@@ -114,6 +132,7 @@ private:
     Counted counted;
     const double cpu = cpu_seconds();
     UMOV_TRY(job_.rows(piece, counted, monitor_, told_at_the_begin_));
+    counted.hash();
     const double taken = cpu_seconds() - cpu;
     spent_ += taken;
     return Sampled{taken, counted.bytes, static_cast<double>(piece.count)};
@@ -130,18 +149,21 @@ private:
 } // namespace
 
 Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monitor &monitor) {
-  constexpr double enough_s = 1.25, at_most_s = 20, settled = 0.15;
+  constexpr double enough_s = 1.25, too_long_s = 1.5, at_most_s = 20, settled = 0.15;
   const std::size_t total = job.total();
-  std::size_t length = std::max<std::size_t>(1, std::min(total, job.grain() / 64));
+  std::size_t length = std::max<std::size_t>(1, std::min(total, job.grain() / 128));
   Rate out;
   out.setup_cpu_s = setup_cpu_s;
   Trial trial(job, monitor);
-  for (double before = 0;; before = out.cpu_s) {
+  for (double before = 0, spent = 0;; before = out.cpu_s, spent = trial.spent()) {
     UMOV_ASSIGN(now, trial.round(length)); // each with pieces twice as long as the one before
     out.cpu_s = now.cpu_s / now.units;
     out.bytes = now.bytes / now.units;
     const bool is_settled = std::abs(before - out.cpu_s) < settled * out.cpu_s;
-    if ((trial.spent() > enough_s && is_settled) || trial.spent() > at_most_s || length * 8 > total)
+    const double with_next_s = trial.spent() + 2 * (trial.spent() - spent);
+    const bool is_enough =
+        trial.spent() > enough_s || (!trial.learns() && with_next_s > too_long_s);
+    if ((is_enough && is_settled) || trial.spent() > at_most_s || length * 8 > total)
       break;
     length = std::min(total, length * 2);
   }

@@ -89,12 +89,13 @@ bool same_cell(const Cells &a, std::size_t i, const Cells &b, std::size_t k) {
       a);
 }
 void push_cell(Cells &to, const Cells &from, std::size_t row) {
-  std::visit([&](auto &cells) {
-    cells.push_back(std::get<std::decay_t<decltype(cells)>>(from)[row]);
-  }, to);
+  std::visit(
+      [&](auto &cells) { cells.push_back(std::get<std::decay_t<decltype(cells)>>(from)[row]); },
+      to);
 }
 Cells none_like(const Cells &cells) {
-  return std::visit([](const auto &like) -> Cells { return std::decay_t<decltype(like)>{}; }, cells);
+  return std::visit([](const auto &like) -> Cells { return std::decay_t<decltype(like)>{}; },
+                    cells);
 }
 
 /// Which rows belong together, in order of their first.
@@ -116,7 +117,8 @@ public:
                                 "one of texts or whole numbers was expected",
                                 printable(name)));
       if (keys_.size() < by_->size())
-        keys_.push_back({column->name, column->unit, column->description, none_like(column->cells)});
+        keys_.push_back(
+            {column->name, column->unit, column->description, none_like(column->cells)});
       columns_.push_back(&column->cells);
     }
     return {};
@@ -270,8 +272,9 @@ private:
       return wanted_.count;
     if (value >= wanted_.high)
       return wanted_.count + 1;
-    const double part = is_log() ? std::log(value / wanted_.low) / std::log(wanted_.high / wanted_.low)
-                                 : (value - wanted_.low) / (wanted_.high - wanted_.low);
+    const double part = is_log()
+                            ? std::log(value / wanted_.low) / std::log(wanted_.high / wanted_.low)
+                            : (value - wanted_.low) / (wanted_.high - wanted_.low);
     auto bin = std::min(static_cast<std::size_t>(part * static_cast<double>(wanted_.count)),
                         wanted_.count - 1);
     while (value < edges_[bin])
@@ -449,7 +452,8 @@ Result<std::unique_ptr<Reducer>> make_reducer(const std::string &text) {
 std::string reduced_name(const std::string &text) {
   const std::size_t kind = text.find(':'), column = text.find(':', kind + 1);
   std::string out = text.substr(0, column);
-  std::ranges::replace_if(out, [](char c) { return c == ':' || c == '-'; }, '_');
+  std::ranges::replace_if(
+      out, [](char c) { return c == ':' || c == '-'; }, '_');
   return out;
 }
 

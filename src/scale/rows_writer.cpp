@@ -23,13 +23,24 @@ struct Dictionary {
 
   explicit Dictionary(const std::vector<std::string> &texts) {
     std::map<std::string_view, std::uint32_t> known;
+    std::vector<std::string_view> words; // by number
+    codes.reserve(texts.size());
+    std::uint32_t last = 0;
     for (const std::string &text : texts) {
-      const auto [at, is_new] = known.emplace(text, static_cast<std::uint32_t>(known.size()));
-      if (is_new) {
-        bytes += text;
-        ends.push_back(bytes.size());
+      // Bands take turns and objects follow each other: there is seldom anything to look for.
+      if (const std::uint32_t next = last + 1 < words.size() ? last + 1 : 0;
+          next < words.size() && words[next] == text) {
+        last = next;
+      } else if (last >= words.size() || words[last] != text) {
+        const auto [at, is_new] = known.emplace(text, static_cast<std::uint32_t>(known.size()));
+        if (is_new) {
+          bytes += text;
+          ends.push_back(bytes.size());
+          words.push_back(text);
+        }
+        last = at->second;
       }
-      codes.push_back(at->second);
+      codes.push_back(last);
     }
   }
 };

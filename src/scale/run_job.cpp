@@ -110,7 +110,7 @@ private:
     while (may_start() && workers_.size() < settings_.workers) {
       const std::size_t memory_mb =
           settings_.memory_mb > 0 ? settings_.memory_mb
-                                  : std::max<std::size_t>(1, memory_here_mb() / settings_.workers);
+                                  : std::max<std::size_t>(64, memory_here_mb() / settings_.workers);
       UMOV_ASSIGN(worker, WorkerProcess::start({settings_.program, "scale", "worker",
                                                 folder_.path().string(), "--threads",
                                                 std::to_string(threads_of_worker()), "--memory-mb",

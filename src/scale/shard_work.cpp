@@ -19,10 +19,15 @@ using nlohmann::json;
 constexpr std::array<const char *, 5> status_names{"done", "there", "failed", "exhausted",
                                                    "refused"};
 
-/// What a process is held to.
+/// What a process was held to; lets it have enough more to say so, as there may be nothing left.
 std::string out_of_memory() {
+  constexpr rlim_t enough = 64'000'000;
   struct rlimit most {};
   ::getrlimit(RLIMIT_DATA, &most);
+  if (most.rlim_cur != RLIM_INFINITY) {
+    const struct rlimit more { std::min(most.rlim_max, most.rlim_cur + enough), most.rlim_max };
+    ::setrlimit(RLIMIT_DATA, &more);
+  }
   return fmt::format("it needs more memory than the {} MB of its process. Shorter shards "
                      "(--per-shard, in a new folder) take less; fewer --workers, or --memory-mb, "
                      "give each more.",

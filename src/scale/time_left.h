@@ -11,7 +11,8 @@ namespace umov::scale {
 /// of those that are: the first ones learn masks, and machines get busier or idler.
 class TimeLeft {
 public:
-  /// `unit_s`: predicted for a pose, an object ... ; `first_s`: for all that comes before the first.
+  /// `unit_s`: predicted for a pose, an object ... ; `first_s`: for all that comes before the
+  /// first.
   TimeLeft(double unit_s, double first_s) : unit_s_(unit_s), first_s_(first_s) {}
   /// A shard of so many units took a worker so long.
   void took(std::size_t units, double seconds);

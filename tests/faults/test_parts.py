@@ -94,11 +94,14 @@ def test_poison_among_the_shards_is_told_and_the_others_are_done(place, job, wor
     assert (place.folder / "merged.csv").read_bytes() == job
 
 
-def test_a_job_that_no_process_has_memory_for_ends_at_once(place, job):
-    fresh(place)
-    ended = place.umov("scale", "run", "job", "--memory-mb", 8)
+def test_a_job_that_no_process_has_memory_for_ends_at_once(place):
+    """A mesh of two hundred thousand triangles in 64 MB: it is not tried for each shard."""
+    place.scenario()
+    assert place.umov("mesh", "make", "sphere", "--facets", 200_000, "-o", "cube.obj").code == 0
+    assert place.umov("scale", "lock", "-q", "--per-shard", 1, "job", *POSES).code == 0
+    ended = place.umov("scale", "run", "job", "--memory-mb", 64)
     assert_clean_end(ended, {6})
-    assert "--memory-mb" in ended.err and not done(place.folder / "job"), ended.err
+    assert "--memory-mb" in ended.err and not done(place.folder / "job") and not os.listdir(place.folder / "job/failed"), ended.err
 
 
 @pytest.fixture

@@ -24,7 +24,8 @@ Table rows(std::vector<double> values, std::vector<std::string> bands) {
   return out;
 }
 Table some_rows() {
-  return rows({0.5, 3, 1, nan, 10, 2, -1, 4, 1, 3}, {"B", "V", "B", "V", "B", "V", "B", "V", "B", "V"});
+  return rows({0.5, 3, 1, nan, 10, 2, -1, 4, 1, 3},
+              {"B", "V", "B", "V", "B", "V", "B", "V", "B", "V"});
 }
 
 template <class T> std::vector<T> cells(const Table &table, const char *name) {
@@ -69,7 +70,8 @@ TEST(Reductions, PutValuesOnAnEdgeIntoTheBinThatItBegins) {
   for (std::size_t k = 0; k < 6; ++k)
     EXPECT_NEAR(edges[k], std::pow(10, static_cast<double>(k) - 3), 1e-12 * edges[k]);
   const auto again = make_reducer("log-histogram:intensity:1e-3:1e3:6");
-  ASSERT_TRUE((*again)->take(rows({edges.begin(), edges.begin() + 6}, std::vector<std::string>(6, "V"))));
+  ASSERT_TRUE(
+      (*again)->take(rows({edges.begin(), edges.begin() + 6}, std::vector<std::string>(6, "V"))));
   const auto counts = cells<std::int64_t>((*again)->table(), "count");
   EXPECT_EQ(std::vector<std::int64_t>(counts.begin(), counts.begin() + 6),
             std::vector<std::int64_t>(6, 1));
@@ -96,7 +98,8 @@ TEST(Reductions, OfManyRowsAreWhatSortingThemGives) {
   std::vector<std::size_t> order(values.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     order[k] = k;
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  std::ranges::stable_sort(order,
+                           [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
   const auto poses = cells<std::int64_t>((*reducer)->table(), "pose");
   ASSERT_EQ(poses.size(), 50u);
   for (std::size_t k = 0; k < 50; ++k)
