@@ -57,7 +57,9 @@ def describe(lines, took):
     part = [left / (took - at) for at, left in lines if 0.1 < at / took < 0.9]
     worst = max(whole, key=lambda ratio: abs(ratio - 1))
     worst_left = max(part, key=lambda ratio: abs(ratio - 1), default=float("nan"))
-    return f"took {took:.0f} s, {len(lines)} times: in all {worst:.2f}, left {worst_left:.2f}"
+    some = lines[:: max(1, len(lines) // 8)]
+    return (f"took {took:.0f} s, {len(lines)} times: in all {worst:.2f}, left {worst_left:.2f} "
+            f"({', '.join(f'{left:.0f} at {at:.0f}' for at, left in some)})")
 
 
 def main():

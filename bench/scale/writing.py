@@ -32,8 +32,8 @@ def main():
             lock(folder, job(poses), "--per-shard", 50_000, *more)
             for mask in (first / "masks").iterdir():
                 (folder / "masks").mkdir(exist_ok=True)
-                if not (folder / "masks" / mask.name).exists():
-                    os.link(mask, folder / "masks" / mask.name)
+                (folder / "masks" / mask.name).unlink(missing_ok=True)  # of the lock's trial: some directions
+                os.link(mask, folder / "masks" / mask.name)
             with Stopwatch() as took:
                 umov("scale", "run", "-q", "--threads", 1, folder)
             size = sum(file.stat().st_size for file in (folder / "shards").rglob("*.rows"))

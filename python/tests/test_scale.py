@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import pickle
+import shutil
 import signal
 import stat
 import subprocess
@@ -188,6 +189,29 @@ def test_poison_is_told_and_the_others_are_done(scene, tmp_path):
     again = umov.scale.run(None, "out")
     assert not again.missing and not again.failed
     assert merged_bytes(again) == plain_bytes(job_of(scene))
+
+
+def test_a_full_disk_ends_the_job_on_a_cluster_and_it_goes_on(scene, tmp_path):
+    """A disk of 400 kB for a job of ten times as much: no worker begins a shard behind the first that has no room."""
+    disk, job = tmp_path / "disk", job_of(scene, 3000)
+    disk.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", disk], capture_output=True, text=True)
+    if mounted.returncode:
+        pytest.skip(f"no small disk can be mounted here: {mounted.stderr.strip()}")
+    try:
+        subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "100", "large", *job.words], check=True)
+        shutil.copytree("large", disk / "out")
+        with pytest.raises(umov.DeviceError, match="umov scale run .*out goes on"):
+            umov.scale.run(None, disk / "out", cluster="local:2")
+        result = umov.scale.Result(disk / "out")
+        there = {path: path.stat().st_mtime_ns for path in result.files}
+        assert 2 <= len(there) < 30 and not list((disk / "out/tmp").iterdir()) and not result.failed
+        subprocess.run(["mount", "-o", "remount,size=40m", disk], check=True)
+        done = umov.scale.run(None, disk / "out", cluster="local:2")
+        assert all(path.stat().st_mtime_ns == at for path, at in there.items())
+        assert merged_bytes(done) == plain_bytes(job)
+    finally:
+        subprocess.run(["umount", disk], check=True)
 
 
 def test_ctrl_c_then_the_printed_command(scene):
