@@ -119,8 +119,11 @@ class DaskCluster:
     def close(self):
         for process in (self.driver, *self.nannies, self.scheduler):
             process.terminate()
-        for process in (self.driver, *self.nannies, self.scheduler):
-            process.wait(30)
+            try:
+                process.wait(15)
+            except subprocess.TimeoutExpired:  # a nanny that waits for a worker which was killed
+                process.kill()
+                process.wait()
 
 
 def dask_storm(place, folder, kills, life_s, rng):

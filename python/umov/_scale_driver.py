@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 import json
 import os
 import pathlib
@@ -9,6 +10,7 @@ import queue
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from ._scale_store import do_shard_of_store, is_url
@@ -99,7 +101,9 @@ class Driver:
         self.result, self.cluster, self.quiet = result, cluster, quiet
         self.do = do_shard_of_store if is_url(result.folder) else do_shard
         self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * shard_s), memory_mb)
-        self.todo = iter(result.missing)
+        self.todo: Iterator[int] = iter(result.missing)
+        self.submits = 0
+        self.has_lost = False
         self.futures: dict[str, Any] = {}
         self.ended: queue.Queue[Any] = queue.Queue()
         self.left = len(result.missing)
@@ -107,7 +111,7 @@ class Driver:
         self.seconds: list[float] = []
         self.predicted_s = predicted["cpu_s"] * lock["per_shard"] / threads
         self.known: set[str] = set()
-        self.began = self.told = self.looked = time.monotonic()
+        self.told = self.looked = time.monotonic()
         self.stopped: Error | Interrupted | None = None
         self.stopped_at = 0.0
         self.resume = (f"umov.scale.run(None, \"{result.folder}\", cluster=...) goes on." if is_url(result.folder) else
@@ -123,7 +127,8 @@ class Driver:
                     break
                 # Several at once: each message costs the scheduler as much as a task, and nobody is idle meanwhile.
                 free = window - len(self.futures)
-                if not self.stopped and free >= window // 8:
+                if not self.stopped and (free >= window // 8 or self.has_lost):
+                    self.has_lost = False
                     self._submit(free)
             except KeyboardInterrupt:
                 if self.stopped:
@@ -150,7 +155,8 @@ class Driver:
         if not indices:
             return
         # No two clients' tasks of one name: what a second one asks for is its own.
-        keys = [f"umov-{self.result.lock['key']}-{index}-{os.getpid()}" for index in indices]
+        self.submits += 1
+        keys = [f"umov-{self.result.lock['key']}-{index}-{os.getpid()}-{self.submits}" for index in indices]
         same = [[one] * len(indices) for one in self.arguments]
         for future in self.cluster.client.map(self.do, indices, *same, pure=False, key=keys):
             self.futures[future.key] = future
@@ -158,6 +164,10 @@ class Driver:
 
     def _take(self, future: Any) -> None:
         if self._scheduler_is_gone():
+            return
+        if future.status == "lost" and not self.stopped:  # a worker was killed with the record in its hands: the shard may be there
+            self.todo = itertools.chain([int(future.key.split("-")[2])], self.todo)
+            self.has_lost = True
             return
         if future.status != "finished":
             why = future.exception() if future.status == "error" else future.status

@@ -295,13 +295,13 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     cluster
         None: this machine, by the command alone. "local:N": N workers on this machine, behind the loopback. Any Dask
         cluster or client, or the address of a scheduler ("tls://host:8786"). The folder must be seen by all workers.
-    per_shard
-        Poses, objects, passes, exposures or curves of a shard; by default what takes 10 to 120 s.
     reduce
         What is kept in place of the rows where these are made faster than they can be stored, each a table of the result:
         "histogram:COLUMN:LOW:HIGH:BINS" (LOW belongs to the first bin, HIGH to none), "log-histogram:..." (bins of one
         ratio), "most:COLUMN:COUNT" or "least:COLUMN:COUNT" (whole rows). Of each band, or of each value of the columns in
         ":BY+BY" behind it. Its table is "log_histogram_intensity" and so on.
+    per_shard
+        Poses, objects, passes, exposures or curves of a shard; by default what takes 10 to 120 s.
     threads
         Of each worker of a cluster.
     timeout_s
