@@ -170,7 +170,8 @@ private:
     if (record.status != ShardRecord::Status::Failed) {
       ++tally_.done;
       if (record.status == ShardRecord::Status::Done)
-        clock_.took(folder_.lock().range(record.index).count, record.seconds);
+        clock_.took(folder_.lock().range(record.index).count, record.seconds,
+                    tally_.done <= settings_.workers);
       if (record.status == ShardRecord::Status::There) {
         ++tally_.by_others;
         go_elsewhere();

@@ -4,7 +4,9 @@
 
 namespace umov::scale {
 
-void TimeLeft::took(std::size_t units, double seconds) {
+void TimeLeft::took(std::size_t units, double seconds, bool is_first) {
+  if (is_first && first_s_ > 0.2 * unit_s_ * static_cast<double>(units))
+    return;
   const Sum before = sums_.back();
   sums_.push_back({before.units + static_cast<double>(units), before.seconds + seconds});
 }

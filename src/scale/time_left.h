@@ -14,8 +14,9 @@ public:
   /// `unit_s`: predicted for a pose, an object ... ; `first_s`: for all that comes before the
   /// first.
   TimeLeft(double unit_s, double first_s) : unit_s_(unit_s), first_s_(first_s) {}
-  /// A shard of so many units took a worker so long.
-  void took(std::size_t units, double seconds);
+  /// A shard of so many units took a worker so long. The first one of a worker (`is_first`) says
+  /// nothing of the others where much comes before it: masks.
+  void took(std::size_t units, double seconds, bool is_first = false);
   /// Seconds until so many units more are done, those in hand among them, of which each worker
   /// (`units_in_hand`, `busy_s`) has done a part.
   [[nodiscard]] double left_s(std::size_t units, std::span<const std::size_t> units_in_hand,

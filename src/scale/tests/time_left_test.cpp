@@ -25,6 +25,16 @@ TEST(TimeLefts, FollowWhatShardsTakeLately) {
               1e-9);
 }
 
+TEST(TimeLefts, LeaveOutFirstShardsThatLearnMuch) {
+  TimeLeft masks(0.1, 30), rays(0.1, 0.5);
+  for (TimeLeft *clock : {&masks, &rays})
+    clock->took(100, 50, true);
+  const std::vector<std::size_t> in_hand{100};
+  EXPECT_NEAR(rays.left_s(100, in_hand, std::vector<double>{0}), 50, 1e-9);
+  masks.took(100, 12);
+  EXPECT_NEAR(masks.left_s(200, in_hand, std::vector<double>{0}), 24, 1e-9);
+}
+
 TEST(TimeLefts, EndWithTheLongestShardInHand) {
   TimeLeft clock(1, 0);
   clock.took(100, 10);
