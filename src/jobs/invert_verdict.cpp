@@ -91,6 +91,24 @@ void doubt_model(double model_error, double floor, Judgement &out) {
     out.verdict = Verdict::Undetermined;
 }
 
+/// A best fit that chance does not explain is either not the best there is (a spin that the search
+/// passed by had a chi-square 100 lower, bench/inverse/blind_set.py), or its errors are too small.
+void doubt_fit(const PoseAnswer &answer, const CurveErrors &errors, Judgement &out) {
+  constexpr double unlikely = 1e-3;
+  const double dof =
+      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+  if (out.verdict != Verdict::Determined || !(dof > 0) || errors.outlier_share > 0)
+    return;
+  const double chance = chi2_probability(answer.chi2, dof);
+  if (!(chance < unlikely))
+    return;
+  out.verdict = Verdict::Undetermined;
+  out.notes.push_back(fmt::format("the best fit misses the data by more than their errors (chance "
+                                  "{:.1g}): one that fits may have been passed by, or errors and "
+                                  "--floor are too small, so this one is not sure",
+                                  chance));
+}
+
 } // namespace
 
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
@@ -111,6 +129,7 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   add_parts(model.parts(), best, out);
   out.notes = limits_of(curve, errors, Asked::Attitude);
   doubt_model(answer.model_error, errors.floor, out);
+  doubt_fit(answer, errors, out);
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
   if (out.null_test.is_flagged())

@@ -113,6 +113,30 @@ def test_blind_attitudes_are_found_or_lie_in_the_set(umov, scene, tmp_path):
     assert inside >= 2  # of 3 at 95 %: one outside is one in seven such tests
 
 
+def test_a_fit_that_chance_does_not_explain_is_not_determined(umov, scene, tmp_path):
+    """Errors told as two thirds of what they are more than double chi-square, to less than the 2 of a degree of freedom of no_fit."""
+    truth = TRUTHS[0]
+    assert umov("run", scene(truth, "rays", "truth"), "-q").code == 0
+    observe(tmp_path, "obs.csv", 60, 1)
+    lines = (tmp_path / "obs.csv").read_text().splitlines()
+    for k, line in enumerate(lines[2:], 2):
+        cells = line.split(",")
+        for c in (3, 6, 7):
+            cells[c] = f"{0.66 * float(cells[c]):.6f}" if cells[c] else ""
+        lines[k] = ",".join(cells)
+    (tmp_path / "small.csv").write_text("\n".join(lines) + "\n")
+    fit = scene([1, 0, 0, 0], "masks", "fit")
+    found = {}
+    for name in ("obs.csv", "small.csv"):
+        done = umov("invert", "pose", name, "--scenario", fit, "-o", "answer", "--force", "--json", "--grid", "30000",
+                    "--floor", 0.002, "--largest-floor", 0)
+        assert done.code == 0, done.err
+        found[name] = json.loads(done.out)
+    assert found["obs.csv"]["verdict"] == "determined" and found["obs.csv"]["p_value"] > 0.001
+    assert found["small.csv"]["verdict"] == "undetermined" and found["small.csv"]["p_value"] < 0.001
+    assert any("may have been passed by" in note for note in found["small.csv"]["notes"])
+
+
 def test_folder_has_the_tables_and_says_what_it_is(umov, scene, tmp_path):
     assert umov("run", scene(TRUTHS[0], "rays", "truth", step=40), "-q").code == 0
     done = umov("invert", "pose", "truth/lightcurve.ecsv", "--scenario", "truth.toml", "-o", "answer", "--grid", "20000")

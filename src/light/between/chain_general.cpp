@@ -150,7 +150,7 @@ void ChainLevel::add_general(const backend::ChainRun &run, const backend::ChainP
                                        any_of(free_p_, pose.at_sun, blocks_, block)};
     if ((open[0] | open[1]) == 0)
       continue;
-    backend::ChainNote note{static_cast<std::uint32_t>(block), {}, {}};
+    backend::ChainNote note{static_cast<std::uint32_t>(block), {}, {}, 0, 0};
     for (std::size_t lane = 0; lane < replicates; ++lane)
       for (const bool is_reversed : {false, true})
         if ((open[is_reversed ? 1 : 0] >> lane & 1U) != 0)

@@ -68,7 +68,7 @@ void ChainLevel::sample(const backend::ChainSums &sums,
   for (std::size_t n = 0; n < sums.noted; ++n) {
     const backend::ChainNote &note = sums.notes[n];
     if (!(note.*most > 0) || scale * (note.*most) <= least_threshold_[note.block])
-      continue; // one block in ten is left, and its chains are few
+      continue; // few blocks are left, and few chains of theirs
     const Thresholds threshold = thresholds(note.block);
     for (std::size_t lane = 0; lane < replicates; ++lane) {
       const float part = (note.*of)[lane]; // where all are faint, the scale may be infinite
