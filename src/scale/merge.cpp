@@ -110,7 +110,7 @@ Result<Ahead> look_ahead(const JobFolder &folder, const std::vector<Shard> &shar
     for (std::size_t n = 0; n < std::min(counts.size(), file.tallies().size()); ++n)
       counts[n] += file.tallies()[n];
   }
-  if (table != 0)
+  if (table != 0 && lock.reductions.empty())
     return out;
   out.warnings = lock.warnings;
   UMOV_ASSIGN(told, jobs::sentences(lock.tallies, counts, lock.total));
@@ -144,6 +144,8 @@ Result<void> merge_reduced(const JobFolder &folder, std::size_t number, TableSin
     }
     monitor.advance("shards", shard.index + 1, shards.size());
   }
+  if (all->rows() == 0 && !folder.lock().nothing.empty())
+    return fail(ErrorCode::Nothing, folder.lock().nothing);
   Table table = all->table();
   jobs::note_warnings(table, ahead.warnings);
   UMOV_TRY(sink.add(std::move(table)));

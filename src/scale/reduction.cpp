@@ -12,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <umov/core/text.h>
 #include <utility>
 
@@ -98,7 +99,8 @@ Cells none_like(const Cells &cells) {
                     cells);
 }
 
-/// Which rows belong together, in order of their first.
+/// Which rows belong together. They stand in the order of their first rows in the whole table:
+/// those of least order, and the earliest of them.
 class Groups {
 public:
   explicit Groups(std::optional<std::vector<std::string>> by) : by_(std::move(by)) {}
@@ -123,27 +125,36 @@ public:
     }
     return {};
   }
-  /// That of a row of the table that was looked at last.
-  std::size_t of(std::size_t row) {
-    // Rows of bands take turns, those of objects follow each other.
-    for (const std::size_t guess : {last_ + 1 < count_ ? last_ + 1 : 0, last_})
-      if (guess < count_ && is(guess, row))
-        return last_ = guess;
-    for (last_ = 0; last_ < count_; ++last_)
-      if (is(last_, row))
-        return last_;
-    for (std::size_t c = 0; c < columns_.size(); ++c)
-      push_cell(keys_[c].cells, *columns_[c], row);
-    return last_ = count_++;
+  /// That of a row of the table that was looked at last; rows come as they are made.
+  std::size_t of(std::size_t row, double order) {
+    const std::size_t group = find(row);
+    if (group == firsts_.size()) {
+      for (std::size_t c = 0; c < columns_.size(); ++c)
+        push_cell(keys_[c].cells, *columns_[c], row);
+      firsts_.push_back({order, turn_++});
+    } else if (order < firsts_[group].order) {
+      firsts_[group] = {order, turn_++};
+    }
+    return last_ = group;
   }
-  [[nodiscard]] std::size_t count() const { return count_; }
-  /// Columns with the cells of each group, `times` over.
+  [[nodiscard]] std::size_t count() const { return firsts_.size(); }
+  [[nodiscard]] double first_order(std::size_t group) const { return firsts_[group].order; }
+  [[nodiscard]] std::vector<std::size_t> in_order() const {
+    std::vector<std::size_t> out(count());
+    std::iota(out.begin(), out.end(), std::size_t{0});
+    std::ranges::sort(out, {}, [this](std::size_t group) {
+      return std::pair{firsts_[group].order, firsts_[group].turn};
+    });
+    return out;
+  }
+  /// Columns with the cells of each group in order, `times` over.
   void add_to(Table &out, std::size_t times) const {
+    const std::vector<std::size_t> groups = in_order();
     for (const Column &key : keys_) {
       Cells cells = none_like(key.cells);
-      for (std::size_t g = 0; g < count_; ++g)
+      for (const std::size_t group : groups)
         for (std::size_t k = 0; k < times; ++k)
-          push_cell(cells, key.cells, g);
+          push_cell(cells, key.cells, group);
       out.add(key.name, key.unit, key.description, std::move(cells));
     }
   }
@@ -158,16 +169,33 @@ public:
   }
 
 private:
+  /// count(): it is of none.
+  [[nodiscard]] std::size_t find(std::size_t row) const {
+    // Rows of bands take turns, those of objects follow each other.
+    for (const std::size_t guess : {last_ + 1 < count() ? last_ + 1 : 0, last_})
+      if (guess < count() && is(guess, row))
+        return guess;
+    for (std::size_t group = 0; group < count(); ++group)
+      if (is(group, row))
+        return group;
+    return count();
+  }
   [[nodiscard]] bool is(std::size_t group, std::size_t row) const {
     for (std::size_t c = 0; c < columns_.size(); ++c)
       if (!same_cell(keys_[c].cells, group, *columns_[c], row))
         return false;
     return true;
   }
+  /// Of two with rows of the same least order that whose row came earlier is before.
+  struct First {
+    double order;
+    std::size_t turn;
+  };
   std::optional<std::vector<std::string>> by_;
   std::vector<Column> keys_;           ///< cells by group
   std::vector<const Cells *> columns_; ///< of the rows at hand
-  std::size_t count_ = 0, last_ = 0;
+  std::vector<First> firsts_;          ///< by group
+  std::size_t last_ = 0, turn_ = 0;
 };
 
 /// The cells of a column of numbers.
@@ -181,17 +209,87 @@ Result<std::vector<double>> numbers_of(const Table &rows, const std::string &nam
               fmt::format("--reduce: column {} is no column of numbers", printable(name)));
 }
 
-/// Once, though what is kept is put together of what was.
-void note_reduction(Table &table, const std::string &text) {
-  if (std::ranges::find(table.notes(), std::pair{std::string("reduction"), text}) ==
-      table.notes().end())
-    table.note("reduction", text);
+/// Of rows where they stand by a column, and of their groups: in what shards keep, and in nothing
+/// that is shown.
+constexpr const char *order_column = "_order", *first_column = "_first";
+constexpr const char *reduction_note = "reduction", *rows_note = "rows_reduced";
+
+std::vector<double> hidden(const Table &kept, const char *name) {
+  const Column *column = kept.find(name);
+  const auto *cells =
+      column == nullptr ? nullptr : std::get_if<std::vector<double>>(&column->cells);
+  return cells == nullptr ? std::vector<double>{} : *cells;
+}
+Table shown(const Table &kept) {
+  Table out = kept;
+  out.remove(order_column);
+  out.remove(first_column);
+  return out;
+}
+double order_at(std::span<const double> order, std::size_t row) {
+  return order.empty() ? 0 : order[row];
 }
 
-class Histogram final : public Reducer {
+/// What all have in common: of how many rows, and what is said of these.
+class GroupedReducer : public Reducer {
 public:
-  Histogram(Wanted wanted, std::string text)
-      : wanted_(std::move(wanted)), text_(std::move(text)), groups_(wanted_.by) {
+  [[nodiscard]] std::size_t rows() const override { return rows_; }
+  [[nodiscard]] Table table() override { return shown(kept()); }
+
+protected:
+  GroupedReducer(Wanted wanted, std::string text)
+      : wanted_(std::move(wanted)), text_(std::move(text)), groups_(wanted_.by) {}
+
+  /// Rows that come, as they are made or as they were kept.
+  Result<void> look_at(const Table &rows, std::span<const double> order) {
+    UMOV_TRY(groups_.look_at(rows));
+    has_order_ = has_order_ || !order.empty();
+    if (about_.columns().empty())
+      about_ = about(rows);
+    return {};
+  }
+  Result<void> count_rows_of(const Table &kept) {
+    const auto note = std::ranges::find(kept.notes(), std::string(rows_note),
+                                        &std::pair<std::string, std::string>::first);
+    std::size_t count = 0;
+    if (note == kept.notes().end() ||
+        std::from_chars(note->second.data(), note->second.data() + note->second.size(), count).ec !=
+            std::errc())
+      return is_none();
+    rows_ += count;
+    return {};
+  }
+  [[nodiscard]] Result<void> is_none() const {
+    return fail(ErrorCode::BadInput, "what was kept of a shard is no " + text_);
+  }
+  void add_notes(Table &out) const {
+    out.note(reduction_note, text_);
+    out.note(rows_note, std::to_string(rows_));
+  }
+  const Wanted wanted_;
+  const std::string text_;
+  Groups groups_;
+  bool has_order_ = false;
+  std::size_t rows_ = 0;
+  Table about_; ///< the columns of the first rows, and what is noted of them
+
+private:
+  static Table about(const Table &rows) {
+    Table out;
+    for (const auto &[key, value] : rows.notes())
+      if (key != reduction_note && key != rows_note)
+        out.note(key, value);
+    for (const Column &column : rows.columns()) {
+      out.add(column.name, column.unit, column.description, none_like(column.cells));
+      out.set_precision(column.name, column.precision);
+    }
+    return out;
+  }
+};
+
+class Histogram final : public GroupedReducer {
+public:
+  Histogram(Wanted wanted, std::string text) : GroupedReducer(std::move(wanted), std::move(text)) {
     const auto bins = static_cast<double>(wanted_.count);
     for (std::size_t k = 0; k <= wanted_.count; ++k) {
       const double part = static_cast<double>(k) / bins;
@@ -200,41 +298,45 @@ public:
     }
     edges_.back() = wanted_.high;
   }
-  Result<void> take(const Table &rows) override {
-    UMOV_TRY(begin(rows, wanted_.column));
+  Result<void> take(const Table &rows, std::span<const double> order) override {
+    UMOV_TRY(begin(rows, order, wanted_.column));
     UMOV_ASSIGN(values, numbers_of(rows, wanted_.column));
+    rows_ += values.size();
     for (std::size_t row = 0; row < values.size(); ++row)
-      ++counts_of(row)[bin_of(values[row])];
+      ++counts_of(row, order_at(order, row))[bin_of(values[row])];
     return {};
   }
   Result<void> join(const Table &kept) override {
-    UMOV_TRY(begin(kept, "low"));
+    UMOV_TRY(count_rows_of(kept));
+    const std::vector<double> first = hidden(kept, first_column);
+    UMOV_TRY(begin(kept, first, "low"));
     UMOV_ASSIGN(column, Groups::column_of(kept, "count"));
     const auto *counts = std::get_if<std::vector<std::int64_t>>(&column->cells);
     if (counts == nullptr || counts->size() % rows_of_group() != 0)
-      return fail(ErrorCode::BadInput, "what was kept of a shard is no " + text_);
+      return is_none();
     for (std::size_t row = 0; row < counts->size(); row += rows_of_group()) {
-      auto &all = counts_of(row);
+      auto &all = counts_of(row, order_at(first, row));
       for (std::size_t k = 0; k < all.size(); ++k)
         all[k] += (*counts)[row + k];
     }
     return {};
   }
-  [[nodiscard]] Table table() override {
+  [[nodiscard]] Table kept() override {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    std::vector<double> low, high;
+    std::vector<double> low, high, first;
     std::vector<std::int64_t> counts;
-    for (const auto &of_group : counts_) {
+    for (const std::size_t group : groups_.in_order()) {
       low.insert(low.end(), edges_.begin(), edges_.end() - 1);
       high.insert(high.end(), edges_.begin() + 1, edges_.end());
       low.insert(low.end(), {nan, wanted_.high, nan});
       high.insert(high.end(), {wanted_.low, nan, nan});
-      counts.insert(counts.end(), of_group.begin(), of_group.end());
+      counts.insert(counts.end(), counts_[group].begin(), counts_[group].end());
+      first.insert(first.end(), rows_of_group(), groups_.first_order(group));
     }
     Table out;
     for (const auto &[key, value] : about_.notes())
       out.note(key, value);
-    note_reduction(out, text_);
+    add_notes(out);
     groups_.add_to(out, rows_of_group());
     out.add("low", unit_, "least value of the bin; not defined: all below `high`", std::move(low));
     out.add("high", unit_,
@@ -242,6 +344,8 @@ public:
             "defined: rows without a value",
             std::move(high));
     out.add("count", "", "rows with a value in the bin", std::move(counts));
+    if (has_order_)
+      out.add(first_column, "", "least order of the rows of the group", std::move(first));
     return out;
   }
 
@@ -249,17 +353,16 @@ private:
   [[nodiscard]] bool is_log() const { return wanted_.kind == Kind::LogHistogram; }
   /// Bins, those below, those above, those without a value.
   [[nodiscard]] std::size_t rows_of_group() const { return wanted_.count + 3; }
-  Result<void> begin(const Table &rows, const std::string &column) {
-    UMOV_TRY(groups_.look_at(rows));
-    if (!std::exchange(has_begun_, true)) {
+  Result<void> begin(const Table &rows, std::span<const double> order, const std::string &column) {
+    UMOV_TRY(look_at(rows, order));
+    if (!std::exchange(has_unit_, true)) {
       UMOV_ASSIGN(values, Groups::column_of(rows, column));
       unit_ = values->unit;
-      about_ = rows.part(0, 0);
     }
     return {};
   }
-  std::vector<std::int64_t> &counts_of(std::size_t row) {
-    const std::size_t group = groups_.of(row);
+  std::vector<std::int64_t> &counts_of(std::size_t row, double order) {
+    const std::size_t group = groups_.of(row, order);
     if (group == counts_.size())
       counts_.emplace_back(rows_of_group());
     return counts_[group];
@@ -283,120 +386,135 @@ private:
       ++bin;
     return bin;
   }
-  const Wanted wanted_;
-  const std::string text_;
   std::vector<double> edges_;
-  Groups groups_;
   std::vector<std::vector<std::int64_t>> counts_; ///< by group
-  bool has_begun_ = false;
+  bool has_unit_ = false;
   std::string unit_;
-  Table about_;
 };
 
-class Extremes final : public Reducer {
+class Extremes final : public GroupedReducer {
 public:
-  Extremes(Wanted wanted, std::string text)
-      : wanted_(std::move(wanted)), text_(std::move(text)), groups_(wanted_.by) {}
+  Extremes(Wanted wanted, std::string text) : GroupedReducer(std::move(wanted), std::move(text)) {}
 
-  Result<void> take(const Table &rows) override {
-    UMOV_TRY(groups_.look_at(rows));
-    UMOV_ASSIGN(values, numbers_of(rows, wanted_.column));
-    if (!std::exchange(has_begun_, true))
-      about_ = rows.part(0, 0);
-    std::vector<std::vector<std::size_t>> wanted(kept_.size());
-    for (std::size_t row = 0; row < values.size(); ++row) {
-      if (std::isnan(values[row]))
-        continue;
-      const std::size_t group = groups_.of(row);
-      if (group >= kept_.size())
-        kept_.resize(group + 1);
-      if (group >= wanted.size())
-        wanted.resize(group + 1);
-      if (const auto &bar = kept_[group].bar; !bar || is_before(values[row], *bar))
-        wanted[group].push_back(row);
-    }
-    for (std::size_t group = 0; group < wanted.size(); ++group)
-      if (!wanted[group].empty())
-        add(kept_[group], rows, values, std::move(wanted[group]));
-    return {};
+  Result<void> take(const Table &rows, std::span<const double> order) override {
+    rows_ += rows.rows();
+    return take_of(rows, order, order);
   }
-  Result<void> join(const Table &kept) override { return take(kept); }
-  [[nodiscard]] Table table() override {
-    Table out;
-    for (Kept &one : kept_) {
+  Result<void> join(const Table &kept) override {
+    UMOV_TRY(count_rows_of(kept));
+    return take_of(shown(kept), hidden(kept, order_column), hidden(kept, first_column));
+  }
+  [[nodiscard]] Table kept() override {
+    Table out = about_;
+    std::vector<double> order, first;
+    for (const std::size_t group : groups_.in_order()) {
+      Kept &one = kept_[group];
       cut(one);
       out.append(Table(one.rows));
+      for (const Key &key : one.keys)
+        order.push_back(key.order);
+      first.insert(first.end(), one.keys.size(), groups_.first_order(group));
     }
-    if (out.rows() == 0)
-      out = about_;
-    note_reduction(out, text_);
+    add_notes(out);
+    if (has_order_) {
+      out.add(order_column, "", "what rows are put in order by", std::move(order));
+      out.add(first_column, "", "least order of the rows of the group", std::move(first));
+    }
     return out;
   }
 
 private:
+  /// What rows are kept by: the value and, where that is the same, their place in the whole table.
+  struct Key {
+    double value, order;
+  };
   struct Kept {
     Table rows;
-    std::vector<double> values;
-    std::optional<double> bar; ///< what does not come before it is not kept
+    std::vector<Key> keys;
+    std::optional<Key> bar; ///< what does not come before it is not kept
   };
-  [[nodiscard]] bool is_before(double a, double b) const {
-    return wanted_.kind == Kind::Most ? a > b : a < b;
+  /// `first`: of the groups that the rows are of.
+  Result<void> take_of(const Table &rows, std::span<const double> order,
+                       std::span<const double> first) {
+    UMOV_TRY(look_at(rows, order));
+    UMOV_ASSIGN(values, numbers_of(rows, wanted_.column));
+    std::vector<Key> keys;
+    for (std::size_t row = 0; row < values.size(); ++row)
+      keys.push_back({values[row], order_at(order, row)});
+    std::vector<std::vector<std::size_t>> wanted(kept_.size());
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (std::isnan(values[row]))
+        continue;
+      const std::size_t group = groups_.of(row, order_at(first, row));
+      if (group >= kept_.size())
+        kept_.resize(group + 1);
+      if (group >= wanted.size())
+        wanted.resize(group + 1);
+      if (const auto &bar = kept_[group].bar; !bar || is_before(keys[row], *bar))
+        wanted[group].push_back(row);
+    }
+    for (std::size_t group = 0; group < wanted.size(); ++group)
+      if (!wanted[group].empty())
+        add(kept_[group], rows, keys, std::move(wanted[group]));
+    return {};
   }
-  /// The first by value, earlier rows first where it is the same.
-  void order(std::vector<std::size_t> &rows, const std::vector<double> &values) const {
+  [[nodiscard]] bool is_before(const Key &a, const Key &b) const {
+    if (a.value == b.value)
+      return a.order < b.order;
+    return wanted_.kind == Kind::Most ? a.value > b.value : a.value < b.value;
+  }
+  /// The first by their keys, those that came earlier first where these are the same.
+  void sort(std::vector<std::size_t> &rows, const std::vector<Key> &keys) const {
     std::ranges::stable_sort(
-        rows, [&](std::size_t a, std::size_t b) { return is_before(values[a], values[b]); });
+        rows, [&](std::size_t a, std::size_t b) { return is_before(keys[a], keys[b]); });
     rows.resize(std::min(rows.size(), wanted_.count));
   }
-  void add(Kept &to, const Table &rows, const std::vector<double> &values,
+  void add(Kept &to, const Table &rows, const std::vector<Key> &keys,
            std::vector<std::size_t> &&wanted) const {
-    order(wanted, values);
+    sort(wanted, keys);
     for (const std::size_t row : wanted)
-      to.values.push_back(values[row]);
+      to.keys.push_back(keys[row]);
     to.rows.append(picked(rows, wanted));
-    if (to.values.size() > 2 * wanted_.count)
+    if (to.keys.size() > 2 * wanted_.count)
       cut(to);
   }
   void cut(Kept &one) const {
-    std::vector<std::size_t> rows(one.values.size());
+    std::vector<std::size_t> rows(one.keys.size());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
-    order(rows, one.values);
+    sort(rows, one.keys);
     if (rows.empty())
       return;
     one.rows = picked(one.rows, rows);
-    std::vector<double> values;
+    std::vector<Key> keys;
     for (const std::size_t row : rows)
-      values.push_back(one.values[row]);
-    one.values = std::move(values);
-    if (one.values.size() == wanted_.count)
-      one.bar = one.values.back();
+      keys.push_back(one.keys[row]);
+    one.keys = std::move(keys);
+    if (one.keys.size() == wanted_.count)
+      one.bar = one.keys.back();
   }
-  const Wanted wanted_;
-  const std::string text_;
-  Groups groups_;
   std::vector<Kept> kept_; ///< by group
-  bool has_begun_ = false;
-  Table about_;
 };
 
 /// Hands the rows of the first table to all who keep something of them.
 class KeptRows final : public jobs::RangeSink {
 public:
-  KeptRows(std::vector<std::unique_ptr<Reducer>> &to, std::string without, jobs::RangeSink &sink)
-      : to_(to), without_(std::move(without)), sink_(sink) {}
+  KeptRows(std::vector<std::unique_ptr<Reducer>> &to, std::string by, jobs::RangeSink &sink)
+      : to_(to), by_(std::move(by)), sink_(sink) {}
   Result<void> add(std::size_t table, Table &&rows) override {
     if (table != 0)
       return {};
-    rows.remove(without_);
+    const std::vector<double> order =
+        by_.empty() ? std::vector<double>{} : hidden(rows, by_.c_str());
+    rows.remove(by_);
     for (const auto &one : to_)
-      UMOV_TRY(one->take(rows));
+      UMOV_TRY(one->take(rows, order));
     return {};
   }
   void tally(const std::vector<std::size_t> &counts) override { sink_.tally(counts); }
 
 private:
   std::vector<std::unique_ptr<Reducer>> &to_;
-  const std::string without_;
+  const std::string by_; ///< RangedJob::order
   jobs::RangeSink &sink_;
 };
 
@@ -418,6 +536,7 @@ public:
       out.push_back(reduced_name(text));
     return out;
   }
+  [[nodiscard]] std::string nothing() const override { return job_->nothing(); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return job_->warnings(); }
   [[nodiscard]] std::vector<jobs::Tally> tallies() const override { return job_->tallies(); }
   Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &monitor,
@@ -430,7 +549,7 @@ public:
     KeptRows kept(all, job_->order(), sink);
     UMOV_TRY(job_->rows(range, kept, monitor, diagnostics));
     for (std::size_t k = 0; k < all.size(); ++k)
-      UMOV_TRY(sink.add(k, all[k]->table()));
+      UMOV_TRY(sink.add(k, all[k]->kept()));
     return {};
   }
   [[nodiscard]] Result<void> keep() override { return job_->keep(); }

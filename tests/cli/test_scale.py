@@ -365,6 +365,66 @@ def test_what_is_kept_of_rows_is_that_of_the_plain_table(umov, scenario, tmp_pat
     assert again.code == 3 and "reduced to" in again.err, again.err
 
 
+def passes_of_thirty(tmp_path, *more):
+    orbits = (ROOT / "tests/data/tle/mixed_979_2018-01-20.tle").read_text().splitlines()[:90]
+    (tmp_path / "thirty.tle").write_text("\n".join(orbits) + "\n")
+    return ["passes", "--orbit", "thirty.tle", *SITE, *more]
+
+
+def test_what_is_kept_of_passes_is_that_of_the_plain_table_however_they_are_cut(umov, tmp_path):
+    """Shards have passes object by object, the table by their rise: what is the same goes by that."""
+    command = passes_of_thirty(tmp_path)
+    plain(umov, command, "plain.csv")
+    rows = read_csv(tmp_path / "plain.csv")
+    most = sorted(rows, key=lambda row: -float(row["sunlit_share"]))[:4]
+    assert most[-1]["sunlit_share"] == "1" and sum(row["sunlit_share"] == "1" for row in rows) > 10
+    groups = list(dict.fromkeys(row["norad_cat_id"] for row in rows))
+    least = [one for group in groups for one in sorted((row for row in rows if row["norad_cat_id"] == group),
+                                                       key=lambda row: float(row["sunlit_share"]))[:1]]
+    for per_shard in (30, 7, 1):
+        job = f"job{per_shard}"
+        done = umov("scale", "run", "--per-shard", per_shard, "--reduce", "most:sunlit_share:4", "--reduce",
+                    "least:sunlit_share:1:norad_cat_id", "--reduce", "histogram:sunlit_share:0:2:1:norad_cat_id", job, *command)
+        assert done.code == 0, done.err
+        for table, expected in (("most_sunlit_share", most), ("least_sunlit_share", least)):
+            assert umov("scale", "merge", job, "--table", table, "-o", "kept.csv").code == 0
+            assert read_csv(tmp_path / "kept.csv") == expected, (per_shard, table)
+        assert umov("scale", "merge", job, "--table", "histogram_sunlit_share", "-o", "kept.csv").code == 0
+        counted = read_csv(tmp_path / "kept.csv")
+        assert [row["norad_cat_id"] for row in counted[::4]] == groups
+        assert sum(int(row["count"]) for row in counted) == len(rows)
+
+
+def test_the_example_of_extremes_of_passes_in_the_page_runs(umov, tmp_path):
+    text = re.search(r"`(least:mag_min:[^`]*)`", (ROOT / "docs/scale.md").read_text())[1]
+    command = passes_of_thirty(tmp_path, "--model", "sphere", "--size-m", 1, "--material", "paper_al")
+    plain(umov, command, "plain.csv")
+    done = umov("scale", "run", "--reduce", text, "job", *command)
+    assert done.code == 0, done.err
+    assert umov("scale", "merge", "job", "-o", "kept.csv").code == 0
+    bright = [row for row in read_csv(tmp_path / "plain.csv") if row["mag_min"]]
+    expected = [one for group in dict.fromkeys(row["norad_cat_id"] for row in bright) for one in
+                sorted((row for row in bright if row["norad_cat_id"] == group), key=lambda row: float(row["mag_min"]))[:3]]
+    assert read_csv(tmp_path / "kept.csv") == expected and len(expected) > 5
+
+
+@pytest.mark.parametrize("reduction", ["histogram:sunlit_share:0:1:4", "most:sunlit_share:3"])
+def test_a_reduced_search_without_a_pass_ends_as_the_plain_one(umov, tmp_path, reduction):
+    command = passes_of_thirty(tmp_path, "--alt-min-deg", 89.9)
+    alone = umov(*command, "-o", "plain.csv")
+    assert umov("scale", "run", "--per-shard", 9, "--reduce", reduction, "job", *command).code == 0
+    merged = umov("scale", "merge", "job", "-o", "merged.csv")
+    assert (merged.code, merged.err.splitlines()[-1]) == (5, alone.err.splitlines()[-1])
+    assert not (tmp_path / "merged.csv").exists()
+
+
+def test_passes_without_what_is_asked_for_are_passes(umov, tmp_path):
+    """Without a model no pass has a magnitude: none is kept, and yet there are some."""
+    assert umov("scale", "run", "--reduce", "least:mag_min:3", "job", *passes_of_thirty(tmp_path)).code == 0
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert read_csv(tmp_path / "merged.csv") == []
+
+
 @pytest.mark.parametrize("text,said", [
     ("mean:intensity", "no such reduction"), ("histogram:intensity:1:0:5", "LOW < HIGH"), ("log-histogram:intensity:0:1:5", "0 < LOW < HIGH"),
     ("histogram:intensity:0:1", "a number of bins"), ("most:intensity:0", "from 1 to a million"), ("most:brightness:5", "there are pose, band"),

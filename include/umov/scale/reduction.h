@@ -3,6 +3,7 @@
 // most of them.
 
 #include <memory>
+#include <span>
 #include <string>
 #include <umov/jobs/ranged_job.h>
 #include <vector>
@@ -14,11 +15,17 @@ namespace umov::scale {
 class Reducer {
 public:
   virtual ~Reducer() = default;
-  /// Rows of the first table of a job. Usage for columns that they do not have.
-  virtual Result<void> take(const Table &rows) = 0;
-  /// What another one kept of the rows behind those that were taken.
+  /// Rows of the first table of a job, and what they are put in order by in the whole of it (those
+  /// of the same as they come); no order: they stand as they come. Usage for columns that they do
+  /// not have.
+  virtual Result<void> take(const Table &rows, std::span<const double> order = {}) = 0;
+  /// What another one kept of the rows behind those that were taken. BadInput for another table.
   virtual Result<void> join(const Table &kept) = 0;
-  /// What is kept so far.
+  /// How many rows were taken, by those that were joined too.
+  [[nodiscard]] virtual std::size_t rows() const = 0;
+  /// What is kept so far, with the order of the rows, for another one to join.
+  [[nodiscard]] virtual Table kept() = 0;
+  /// What is kept so far, as it is shown.
   [[nodiscard]] virtual Table table() = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <span>
 
 namespace umov::scale {
 namespace {
@@ -37,8 +38,8 @@ Table kept(const std::string &text, const Table &all, std::size_t cut) {
   const auto one = make_reducer(text), other = make_reducer(text), both = make_reducer(text);
   EXPECT_TRUE((*one)->take(all.part(0, cut)));
   EXPECT_TRUE((*other)->take(all.part(cut, all.rows() - cut)));
-  EXPECT_TRUE((*both)->join((*one)->table()));
-  EXPECT_TRUE((*both)->join((*other)->table()));
+  EXPECT_TRUE((*both)->join((*one)->kept()));
+  EXPECT_TRUE((*both)->join((*other)->kept()));
   return (*both)->table();
 }
 
@@ -84,6 +85,56 @@ TEST(Reductions, KeepTheMostAndTheLeastWithEarlierRowsFirst) {
     EXPECT_EQ(cells<std::int64_t>(most, "pose"), (std::vector<std::int64_t>{4, 2, 7, 1}));
     const Table least = kept("least:intensity:3:pose+band", some_rows(), cut);
     EXPECT_EQ(least.rows(), 9u); // one of each pose; that without a value is none
+  }
+}
+
+/// Rows of three that are made one after the other, and what puts all of them in order.
+struct Made {
+  Table rows;
+  std::vector<double> order;
+};
+Made made_by_three() {
+  return {rows({7, 7, 5, 7, 5, 7, nan}, {"A", "A", "B", "C", "C", "B", "A"}),
+          {30, 10, 20, 5, 10, 5, 1}};
+}
+
+TEST(Reductions, TakeWhatIsTheSameInTheOrderOfTheWholeTable) {
+  // In order: pose 6 (A, nothing), 3 (C), 5 (B), 1 (A), 4 (C), 2 (B), 0 (A).
+  const Made all = made_by_three();
+  for (std::size_t cut = 0; cut <= 7; ++cut)
+    for (const auto &[text, poses] :
+         {std::pair<std::string, std::vector<std::int64_t>>{"most:intensity:1:band", {3, 5, 1}},
+          {"least:intensity:2:band", {4, 3, 2, 5, 1, 0}}}) {
+      const auto one = make_reducer(text), other = make_reducer(text), both = make_reducer(text);
+      const std::span order(all.order);
+      ASSERT_TRUE((*one)->take(all.rows.part(0, cut), order.first(cut)));
+      ASSERT_TRUE((*other)->take(all.rows.part(cut, 7 - cut), order.subspan(cut)));
+      ASSERT_TRUE((*both)->join((*one)->kept()));
+      ASSERT_TRUE((*both)->join((*other)->kept()));
+      EXPECT_EQ(cells<std::int64_t>((*both)->table(), "pose"), poses) << text << " cut at " << cut;
+      EXPECT_EQ((*both)->table().columns().size(), 3u);
+      EXPECT_EQ((*both)->rows(), 7u);
+    }
+}
+
+TEST(Reductions, CountGroupsInTheOrderOfTheWholeTable) {
+  const Made all = made_by_three();
+  const std::string text = "histogram:intensity:0:6:1:band";
+  for (std::size_t cut = 0; cut <= 7; ++cut) {
+    const auto one = make_reducer(text), other = make_reducer(text), both = make_reducer(text);
+    const std::span order(all.order);
+    ASSERT_TRUE((*one)->take(all.rows.part(0, cut), order.first(cut)));
+    ASSERT_TRUE((*other)->take(all.rows.part(cut, 7 - cut), order.subspan(cut)));
+    ASSERT_TRUE((*both)->join((*one)->kept()));
+    ASSERT_TRUE((*both)->join((*other)->kept()));
+    const Table table = (*both)->table();
+    EXPECT_EQ(
+        cells<std::string>(table, "band"),
+        (std::vector<std::string>{"A", "A", "A", "A", "C", "C", "C", "C", "B", "B", "B", "B"}));
+    // In the bin, below, above, without a value.
+    EXPECT_EQ(cells<std::int64_t>(table, "count"),
+              (std::vector<std::int64_t>{0, 0, 2, 1, 1, 0, 1, 0, 1, 0, 1, 0}));
+    EXPECT_EQ(table.columns().size(), 4u);
   }
 }
 
