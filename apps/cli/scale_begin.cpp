@@ -7,8 +7,10 @@
 #include <ctime>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <iostream>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <umov/light/instruction_set.h>
 #include <umov/scale/reduction.h>
 #include <unistd.h>
@@ -63,6 +65,18 @@ Result<void> hold_to(const std::string &instruction_set) {
 
 } // namespace
 
+Result<void> refuse_others(const ScaleJobOptions &o, const scale::JobLock &lock) {
+  if (!o.verb.empty() || o.reductions.empty() || o.reductions == lock.reductions)
+    return {};
+  return fail(ErrorCode::Usage,
+              fmt::format("--reduce {}: the job of the folder keeps {}. What a job keeps is said "
+                          "when it is begun: leave it out, or begin another in a new folder",
+                          printable(fmt::format("{}", fmt::join(o.reductions, ", "))),
+                          lock.reductions.empty()
+                              ? "all rows"
+                              : fmt::format("{}", fmt::join(lock.reductions, ", "))));
+}
+
 std::string own_program() {
   std::error_code code;
   const fs::path self = fs::read_symlink("/proc/self/exe", code);
@@ -112,6 +126,7 @@ Result<scale::JobFolder> folder_of(const ScaleJobOptions &o, const scale::PlanSe
   const bool is_there = file_exists(fs::path(o.folder) / "job.json");
   if (o.verb.empty() || is_there) {
     UMOV_ASSIGN(folder, scale::JobFolder::open(o.folder));
+    UMOV_TRY(refuse_others(o, folder.lock()));
     const bool is_same = o.verb == folder.lock().verb && o.arguments == folder.lock().arguments &&
                          o.reductions == folder.lock().reductions &&
                          (o.per_shard == 0 || o.per_shard == folder.lock().per_shard);

@@ -19,6 +19,7 @@ Result<void> plan(const PlanOptions &o, const Common &common, Diagnostics &diagn
   scale::JobLock lock;
   if (o.job.verb.empty()) {
     UMOV_ASSIGN(folder, scale::JobFolder::open(o.job.folder));
+    UMOV_TRY(refuse_others(o.job, folder.lock()));
     lock = folder.lock();
   } else {
     std::unique_ptr<jobs::RangedJob> job;

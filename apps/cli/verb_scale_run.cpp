@@ -33,12 +33,25 @@ runpy.run_module("umov.scale", run_name="__main__", alter_sys=True)
 )";
 
 /// Dask is Python's: the same folder, done by umov.scale.
-Result<void> run_on_cluster(const ScaleRunOptions &o, const scale::JobFolder &folder) {
-  const std::string path = folder.path().string(), program = own_program();
-  const char *const words[] = {"python3",       "-c",        begin_dask,        "run",
-                               path.c_str(),    "--cluster", o.cluster.c_str(), "--program",
-                               program.c_str(), nullptr};
-  ::execvp(words[0], const_cast<char *const *>(words));
+Result<void> run_on_cluster(const ScaleRunOptions &o, const scale::JobFolder &folder,
+                            const Common &common) {
+  std::vector<std::string> words{"python3", "-c", begin_dask, "run", folder.path().string()};
+  words.insert(words.end(), {"--cluster", o.cluster, "--program", own_program()});
+  if (o.settings.threads > 0)
+    words.insert(words.end(), {"--threads", std::to_string(o.settings.threads)});
+  if (o.settings.timeout_s > 0)
+    words.insert(words.end(), {"--timeout-s", fmt::format("{}", o.settings.timeout_s)});
+  if (o.settings.memory_mb > 0)
+    words.insert(words.end(), {"--memory-mb", std::to_string(o.settings.memory_mb)});
+  if (o.settings.joins)
+    words.emplace_back("--join");
+  if (common.quiet)
+    words.emplace_back("--quiet");
+  std::vector<char *> given;
+  for (std::string &word : words)
+    given.push_back(word.data());
+  given.push_back(nullptr);
+  ::execvp(given.front(), given.data());
   return fail(ErrorCode::Device,
               "--cluster takes Python with the package umov[scale]; without it umov scale run "
               "works on this machine, and umov scale script for a batch system");
@@ -72,7 +85,7 @@ Result<void> run_scale(ScaleRunOptions &o, const Common &common, Diagnostics &di
   plan.threads = std::max<std::size_t>(1, plan.cores / o.settings.workers);
   UMOV_ASSIGN(folder, folder_of(o.job, plan, common, diagnostics));
   if (!o.cluster.empty())
-    return run_on_cluster(o, folder);
+    return run_on_cluster(o, folder, common);
   JobConsole console(common);
   const jobs::Monitor monitor = console.monitor(true);
   UMOV_ASSIGN(tally, scale::run_job(folder, o.settings, monitor));
@@ -102,12 +115,14 @@ void add_scale_run(CLI::App &scale, const Exit &exit_with) {
   auto common = std::make_shared<Common>();
   verb->footer("Ended in any way, umov scale run FOLDER goes on where it was.");
   add_scale_job(*verb, o->job);
-  verb->add_option("--workers", o->settings.workers,
-                   "Processes at a time; one with all threads serves most jobs best")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  verb->add_option("--part", o->part,
-                   "K/N: of the shards the K-th of N shares, from 0, as a task of an array job");
+  auto *workers =
+      verb->add_option("--workers", o->settings.workers,
+                       "Processes at a time; one with all threads serves most jobs best")
+          ->check(CLI::Range(1, 1024))
+          ->capture_default_str();
+  auto *part = verb->add_option(
+      "--part", o->part,
+      "K/N: of the shards the K-th of N shares, from 0, as a task of an array job");
   verb->add_flag("--join", o->settings.joins, "Take part in a job that another umov is at");
   verb->add_option("--timeout-s", o->settings.timeout_s,
                    "Of a shard; default: ten times what is predicted, at least 60")
@@ -117,7 +132,9 @@ void add_scale_run(CLI::App &scale, const Exit &exit_with) {
       ->check(CLI::Range(64, 1'000'000'000));
   verb->add_option("--cluster", o->cluster,
                    "local:N, or the address of a Dask scheduler; takes the Python package "
-                   "umov[scale]");
+                   "umov[scale]")
+      ->excludes(workers)
+      ->excludes(part);
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
   verb->callback(stoppable(exit_with, common, [=](Diagnostics &diagnostics) {

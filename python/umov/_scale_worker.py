@@ -55,7 +55,7 @@ class _Server:
             return self.process.wait()
 
 
-_idle: dict[tuple[str, str, int], list[_Server]] = {}
+_idle: dict[tuple[str, str, int, int | None], list[_Server]] = {}
 _idle_lock = threading.Lock()
 
 
@@ -70,7 +70,8 @@ def _memory_of_this_worker_mb() -> int | None:
     """What Dask gives a thread of this worker; None: it sets no limit, and nine tenths of the machine are the command's own."""
     try:
         worker = importlib.import_module("distributed").get_worker()
-        return int((worker.memory_manager.memory_limit or 0) / worker.state.nthreads / 1e6) or None
+        limit = worker.memory_manager.memory_limit
+        return max(64, int(limit / worker.state.nthreads / 1e6)) if limit else None  # 64: the least that the command takes
     except (ImportError, ValueError, AttributeError):
         return None
 
@@ -78,13 +79,14 @@ def _memory_of_this_worker_mb() -> int | None:
 def do_shard(index: int, program: str, folder: str, threads: int, timeout_s: float,
              memory_mb: int | None = None) -> dict[str, Any]:
     """One shard, in a Dask worker. Never raises: what went wrong is in the record."""
-    key = (program, folder, threads)
+    memory_mb = memory_mb or _memory_of_this_worker_mb()
+    key = (program, folder, threads, memory_mb)
     why: dict[str, Any] = {}
     for attempt in range(1, _ATTEMPTS + 1):
         with _idle_lock:
             server = _idle[key].pop() if _idle.get(key) else None
         try:
-            server = server or _Server(program, folder, threads, memory_mb or _memory_of_this_worker_mb())
+            server = server or _Server(program, folder, threads, memory_mb)
         except OSError as problem:
             return {"index": index, "status": "failed", "code": 6, "message": f"{program}: {problem}"}
         line = server.ask(index, timeout_s)

@@ -21,7 +21,7 @@ from . import _scale_store
 from ._scale_command import call, call_for_rows, find_program
 from ._scale_driver import Cluster, Driver, Hold
 from ._scale_store import Store, StoreLease, is_url
-from ._numbers import number, path_text
+from ._numbers import number, path_text, whole_between
 from .errors import Error, InputError, Interrupted, UsageError
 from .rows import Rows
 
@@ -307,8 +307,8 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     timeout_s
         Of a shard; by default ten times what is predicted, at least 60.
     memory_mb
-        Of each process that does shards: one that wants more is told as a shard that could not be done. By default what Dask
-        gives a worker, or nine tenths of the machine.
+        Of each process that does shards: one that wants more is told as a shard that could not be done. 64 at least. By default
+        what Dask gives a thread of a worker, or nine tenths of the machine.
     join
         Take part in a job that another is at.
     yes
@@ -342,6 +342,7 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
         raise UsageError(f"job is a {type(job).__name__}; a umov.scale.Job was expected, or None for that of the folder")
     words = job.words if job else []
     timeout_s = None if timeout_s is None else number(timeout_s, "timeout_s")
+    memory_mb = None if memory_mb is None else whole_between(memory_mb, "memory_mb", 64, 1_000_000_000)
     if is_url(output) and cluster is None:
         raise UsageError(f"output is {output}; an object store takes a cluster: cluster=\"local:{os.cpu_count()}\" is this machine")
     more = [*(["--per-shard", per_shard] if per_shard else []), *(["--yes"] if yes else []), *_reduce_words(reduce)]
@@ -355,11 +356,21 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     elif words:
         call(umov, "lock", "-q", *more, output, *words)
     result = Result(output, umov)
+    if not words:
+        _refuse_others(reduce, result)
     if result.missing:
         _do_missing(result, cluster, threads, timeout_s, join, tls, quiet, memory_mb)
     if result._store is None and not result.missing:  # of a store, `merge` tells
         call_for_rows(umov, "run", "-q", *(["--join"] if join else []), result.folder)
     return result
+
+
+def _refuse_others(reduce: str | Sequence[str], result: Result) -> None:
+    """What the folder of a job does not keep: the command refuses it with the same words."""
+    given, kept = _reduce_words(reduce)[1::2], result.lock.get("reduce", [])
+    if given and given != kept:
+        raise UsageError(f"reduce is {', '.join(given)}; {result.folder} keeps {', '.join(kept) or 'all rows'}. What a job keeps "
+                         "is said when it is begun: leave it out, or begin another in a new folder")
 
 
 def _do_missing(result: Result, cluster: Any, threads: int, timeout_s: float | None, join: bool, tls: bool, quiet: bool,
@@ -389,13 +400,16 @@ def _main() -> int:
     parser.add_argument("--cluster", required=True)
     parser.add_argument("--program")
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--timeout-s", type=float)
+    parser.add_argument("--memory-mb", type=int)
+    parser.add_argument("--quiet", action="store_true")
     parser.add_argument("--join", action="store_true")
     given = parser.parse_args()
     try:
         umov = find_program(given.program)
         result = Result(given.folder, umov)
         if result.missing:
-            _do_missing(result, given.cluster, given.threads, None, given.join, True, False)
+            _do_missing(result, given.cluster, given.threads, given.timeout_s, given.join, True, given.quiet, given.memory_mb)
         if not result.missing:
             call(umov, "run", "-q", *(["--join"] if given.join else []), given.folder)
     except (Error, Interrupted) as error:

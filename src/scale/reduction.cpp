@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -43,6 +44,24 @@ std::vector<std::string> split(const std::string &text, char at) {
   return out;
 }
 
+/// One more than bins.
+std::vector<double> edges_of(const Wanted &wanted) {
+  const auto bins = static_cast<double>(wanted.count);
+  std::vector<double> out;
+  for (std::size_t k = 0; k <= wanted.count; ++k) {
+    const double part = static_cast<double>(k) / bins;
+    out.push_back(wanted.kind == Kind::LogHistogram
+                      ? wanted.low * std::pow(wanted.high / wanted.low, part)
+                      : wanted.low + (wanted.high - wanted.low) * part);
+  }
+  out.back() = wanted.high;
+  return out;
+}
+bool are_edges(const std::vector<double> &edges) {
+  return std::ranges::all_of(edges, [](double edge) { return std::isfinite(edge); }) &&
+         std::ranges::adjacent_find(edges, std::greater_equal()) == edges.end();
+}
+
 Result<Wanted> read_wanted(const std::string &text) {
   const auto refuse = [&text](const std::string &why) {
     return fail(ErrorCode::Usage,
@@ -75,6 +94,9 @@ Result<Wanted> read_wanted(const std::string &text) {
     if (!low || !high || !(*low < *high) || (out.kind == Kind::LogHistogram && !(*low > 0)))
       return refuse(out.kind == Kind::LogHistogram ? "0 < LOW < HIGH" : "LOW < HIGH");
     out.low = *low, out.high = *high;
+    if (!are_edges(edges_of(out)))
+      return refuse("LOW and HIGH are too far apart, or too near for so many bins: the edges "
+                    "between them are no rising numbers");
   }
   if (words.size() > least)
     out.by = split(words[least], '+');
@@ -289,15 +311,8 @@ private:
 
 class Histogram final : public GroupedReducer {
 public:
-  Histogram(Wanted wanted, std::string text) : GroupedReducer(std::move(wanted), std::move(text)) {
-    const auto bins = static_cast<double>(wanted_.count);
-    for (std::size_t k = 0; k <= wanted_.count; ++k) {
-      const double part = static_cast<double>(k) / bins;
-      edges_.push_back(is_log() ? wanted_.low * std::pow(wanted_.high / wanted_.low, part)
-                                : wanted_.low + (wanted_.high - wanted_.low) * part);
-    }
-    edges_.back() = wanted_.high;
-  }
+  Histogram(Wanted wanted, std::string text)
+      : GroupedReducer(std::move(wanted), std::move(text)), edges_(edges_of(wanted_)) {}
   Result<void> take(const Table &rows, std::span<const double> order) override {
     UMOV_TRY(begin(rows, order, wanted_.column));
     UMOV_ASSIGN(values, numbers_of(rows, wanted_.column));
@@ -386,7 +401,7 @@ private:
       ++bin;
     return bin;
   }
-  std::vector<double> edges_;
+  const std::vector<double> edges_;
   std::vector<std::vector<std::int64_t>> counts_; ///< by group
   bool has_unit_ = false;
   std::string unit_;

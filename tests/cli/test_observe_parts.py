@@ -135,6 +135,16 @@ def test_saturation_is_told_of_the_whole(umov, scene, tmp_path):
     assert not (tmp_path / "counts.ecsv").exists()
 
 
+def test_what_is_kept_in_place_of_rows_warns_as_they_do(umov, scene, tmp_path):
+    """Whichever table is asked for: what was noticed is of the rows that were made, not of one table."""
+    done = umov("scale", "run", "--per-shard", 25, "--reduce", "most:counts:3", "--reduce", "histogram:counts:0:1e9:2", "job",
+                "observe", scene())
+    assert done.code == 0, done.err
+    for table in ("most_counts", "histogram_counts"):
+        assert umov("scale", "merge", "job", "--table", table, "-o", "kept.csv").code == 0
+        assert any("warning_1" in line and "67 exposures with a sky" in line for line in header(tmp_path / "kept.csv")), table
+
+
 @pytest.mark.parametrize("part, told", [(("--shard", "3/3"), "K from 0"), (("--range", "60:20"), "67 exposures"),
                                         (("--shard", "80/90"), "67 exposures")])
 def test_a_part_that_is_none(umov, scene, part, told):
