@@ -47,7 +47,7 @@ void add_scale_script(CLI::App &scale, const Exit &exit_with) {
   verb->add_option("--tasks", o->settings.tasks, "Of the array")->check(CLI::Range(1, 100'000));
   verb->add_option("--threads", o->settings.threads, "Of each task")->check(CLI::Range(1, 1024));
   verb->add_option("--memory-mb", o->settings.memory_mb, "Of each task")
-      ->check(CLI::Range(1, 10'000'000))
+      ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();
   verb->add_option("--partition", o->settings.partition, "Of SLURM");
   verb->add_option("-o,--output", o->output, "File of the script, instead of stdout");

@@ -50,7 +50,7 @@ Result<void> work(const std::string &path, const Common &common) {
                 return verb_in_parts(lock.verb, lock.arguments, parts, told_at_the_begin);
               }));
   UMOV_TRY(scale::check_same_job(folder, *job));
-  return scale::serve_shards(folder, *job);
+  return within_memory([&] { return scale::serve_shards(folder, *job); }); // masks, when kept
 }
 
 /// The exit code; who asks for shards hears why there are none.

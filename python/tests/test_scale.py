@@ -191,6 +191,131 @@ def test_poison_is_told_and_the_others_are_done(scene, tmp_path):
     assert merged_bytes(again) == plain_bytes(job_of(scene))
 
 
+def told_words(tmp_path, body=""):
+    """A command that writes down with what words each worker was started."""
+    return wrapper(tmp_path, f"print(*sys.argv[1:], file=open({str(tmp_path / 'words')!r}, 'a'))\n    {body}")
+
+
+def test_words_of_the_command_reach_the_workers(scene, tmp_path):
+    """As umov scale run --cluster starts it: threads, memory, and the time after which a shard that hangs is ended."""
+    program = told_words(tmp_path, "if index == 3: time.sleep(1000)")
+    subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "100", "out", *job_of(scene).words], check=True)
+    done = subprocess.run([sys.executable, "-m", "umov.scale", "run", "out", "--cluster", "local:1", "--program", program, "--threads", "2",
+                           "--timeout-s", "6", "--memory-mb", "700", "--quiet"], capture_output=True, text=True)
+    assert done.returncode == 3 and "it was not done after 6 s" in done.stderr, done.stderr
+    assert umov.scale.Result("out").missing == [3]
+    assert set((tmp_path / "words").read_text().splitlines()) == {f"scale worker {tmp_path / 'out'} --threads 2 --memory-mb 700 -q"}
+
+
+@pytest.mark.parametrize("memory_mb", [63, 0, -5, 100.5, "200", True, 10**12])
+def test_memory_that_is_none_is_refused(scene, memory_mb):
+    with pytest.raises(umov.UsageError, match="memory_mb is .* from 64"):
+        umov.scale.run(job_of(scene, 20), "out", memory_mb=memory_mb)
+    assert not pathlib.Path("out").exists()
+
+
+@pytest.mark.parametrize("cluster", [None, "local:1"])
+def test_a_job_without_memory_for_any_shard_ends_soon(scene, cluster):
+    """Three bands of a million bins are hundreds of megabytes; ten attempts, and twelve where each shard has its three at once."""
+    with pytest.raises(umov.DeviceError, match="1[02] attempts ran out of memory.*umov scale run .*out goes on"):
+        umov.scale.run(job_of(scene), "out", cluster=cluster, reduce="histogram:intensity:0:1:1000000", per_shard=10, memory_mb=120)
+    assert len(umov.scale.Result("out").missing) == 40
+    again = umov.scale.run(None, "out", cluster=cluster)
+    assert not again.missing and not again.failed
+
+
+def test_a_worker_of_other_memory_is_another(scene, tmp_path):
+    from umov import _scale_worker
+    subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "20", "out", *job_of(scene, 60).words], check=True)
+    program = told_words(tmp_path)
+    try:
+        for index, memory_mb in enumerate((500, 700, 500)):
+            assert _scale_worker.do_shard(index, program, "out", 1, 60, memory_mb)["status"] == "done"
+    finally:
+        _scale_worker._end_all()
+        _scale_worker._idle.clear()
+    assert [line.split()[6] for line in (tmp_path / "words").read_text().splitlines()] == ["500", "700", "500"]
+
+
+@pytest.mark.parametrize("limit, threads, expected", [(100e6, 4, 64), (8e9, 2, 4000), (0, 2, None), (None, 2, None)])
+def test_memory_of_a_dask_worker_is_shared_by_its_threads(monkeypatch, limit, threads, expected):
+    """64 MB at least, which is the least that the command takes; no limit: the command's own."""
+    import types
+    import distributed
+    from umov import _scale_worker
+    worker = types.SimpleNamespace(memory_manager=types.SimpleNamespace(memory_limit=limit), state=types.SimpleNamespace(nthreads=threads))
+    monkeypatch.setattr(distributed, "get_worker", lambda: worker)
+    assert _scale_worker._memory_of_this_worker_mb() == expected
+
+
+class Played:
+    """A cluster whose records are made up: `how` says of each call of a shard what comes of it, "lost" or a record."""
+
+    def __init__(self, how):
+        self.how, self.asked, self.status, self.client = how, [], "running", self
+
+    def workers(self):
+        return {"one"}
+
+    def processing(self):
+        return {}
+
+    def cancel(self, futures):
+        pass
+
+    def map(self, do, indices, *same, pure, key):
+        return [self.future(index, name) for index, name in zip(indices, key)]
+
+    def future(self, index, name):
+        import types
+        self.asked.append(index)
+        came = self.how(index, self.asked.count(index))
+        out = types.SimpleNamespace(key=name, status="lost" if came == "lost" else "finished", result=lambda: came, release=lambda: None)
+        out.add_done_callback = lambda tell: tell(out)
+        return out
+
+
+def driver_of(scene, how, shards=20):
+    from umov._scale_driver import Driver
+    subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "10", "out", *job_of(scene, 10 * shards).words], check=True)
+    played = Played(how)
+    return Driver(umov.scale.Result("out"), played, 1, None, True), played
+
+
+def record(index, status="done"):
+    return {"index": index, "status": status, "code": 6 if status == "exhausted" else 0, "message": "too little", "seconds": 1.0, "attempts": 3}
+
+
+def test_a_record_that_is_lost_is_asked_for_again(scene):
+    """Its worker was killed when the shard was done: no other is asked for twice, and nothing has failed."""
+    driver, played = driver_of(scene, lambda index, turn: "lost" if index in (3, 4) and turn == 1 else record(index))
+    driver.run()
+    assert sorted(played.asked) == sorted([*range(20), 3, 4]) and (driver.done, driver.failed) == (20, 0)
+
+
+def test_shards_without_memory_are_told_where_others_are_done(scene):
+    driver, _ = driver_of(scene, lambda index, turn: record(index, "done" if index == 0 else "exhausted"))
+    driver.run()
+    assert (driver.done, driver.failed) == (1, 19)
+
+
+def test_time_left_begins_with_what_comes_before_the_first_shard(scene):
+    """By hand: 20 shards of which half of one is done, 2 s each, and 30 s before; the first one says that the 30 s are over."""
+    driver, _ = driver_of(scene, lambda index, turn: record(index))
+    driver.first_s, driver.predicted_s = 30.0, 2.0
+    assert driver.seconds_left(1) == pytest.approx(30 + 19.5 * 2, abs=1)
+    driver.done = 1
+    assert driver.seconds_left(1) == pytest.approx(18.5 * 2)
+
+
+def test_what_the_folder_does_not_keep_is_refused(scene):
+    umov.scale.run(job_of(scene, 20), "out", reduce="most:intensity:2")
+    for cluster in (None, "local:1"):
+        with pytest.raises(umov.UsageError, match="most:intensity:3.*most:intensity:2"):
+            umov.scale.run(None, "out", cluster=cluster, reduce="most:intensity:3")
+        assert not umov.scale.run(None, "out", cluster=cluster, reduce="most:intensity:2").missing
+
+
 def test_a_full_disk_ends_the_job_on_a_cluster_and_it_goes_on(scene, tmp_path):
     """A disk of 400 kB for a job of ten times as much: no worker begins a shard behind the first that has no room."""
     disk, job = tmp_path / "disk", job_of(scene, 3000)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 SETTINGS = {"distributed.scheduler.allowed-failures": 1000, "distributed.scheduler.worker-ttl": "60s",
             "distributed.scheduler.worker-saturation": 1.0, "distributed.worker.memory.terminate": 0.95}
 _PATIENCE_S = 30.0  # of shards in hand after Ctrl-C
+_EXHAUSTED = 10  # attempts without memory before the first shard is done, after which no other is made
 _LOSSES = 10  # of workers without a shard done between them, after which it is said that none will be
 
 
@@ -107,12 +108,12 @@ class Driver:
         self.futures: dict[str, Any] = {}
         self.ended: queue.Queue[Any] = queue.Queue()
         self.left = len(result.missing)
-        self.done = self.failed = self.lost = 0
+        self.done = self.failed = self.lost = self.exhausted = 0
         self.seconds: list[float] = []
         self.first_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) / threads
         self.predicted_s = predicted["cpu_s"] * lock["per_shard"] / threads
         self.known: set[str] = set()
-        self.told = self.looked = time.monotonic()
+        self.began = self.told = self.looked = time.monotonic()
         self.stopped: Error | Interrupted | None = None
         self.stopped_at = 0.0
         self.resume = (f"umov.scale.run(None, \"{result.folder}\", cluster=...) goes on." if is_url(result.folder) else
@@ -189,6 +190,10 @@ class Driver:
         else:
             self.failed += 1
             self._tell_failed(record)
+            self.exhausted += record["attempts"] if record["status"] == "exhausted" else -self.exhausted
+            if self.exhausted >= _EXHAUSTED and self.done == 0:
+                self._stop(DeviceError(f"{self.exhausted} attempts ran out of memory one after the other, and no shard was done: "
+                                       f"{record['message']}"))
 
     def _tell_failed(self, record: dict[str, Any]) -> None:
         lock, index = self.result.lock, record["index"]
@@ -243,13 +248,14 @@ class Driver:
                   f"about {self.seconds_left(len(workers)):.0f} s left", file=sys.stderr, flush=True)
 
     def seconds_left(self, workers: int) -> float:
-        """From what the later half of the shards have taken; by the prediction until there is one. Of those in hand half is
-        done, one for each worker."""
+        """From what the later half of the shards have taken; by the prediction until there is one, with what comes before the
+        first. Of those in hand half is done, one for each worker."""
         workers = max(1, workers)
         lately = self.seconds[len(self.seconds) // 2:]
         shard_s = sum(lately) / len(lately) if lately else self.predicted_s
         rest = self.left - self.done - self.failed
-        return max(0.0, rest - min(workers, rest) / 2) * shard_s / workers
+        before = max(0.0, self.first_s - (time.monotonic() - self.began)) if not self.done else 0.0
+        return before + max(0.0, rest - min(workers, rest) / 2) * shard_s / workers
 
 
 class Hold:

@@ -15,12 +15,15 @@
 #include <set>
 #include <span>
 #include <umov/core/text.h>
+#include <unordered_map>
 #include <utility>
 
 namespace umov::scale {
 namespace {
 
 constexpr std::size_t most_bins = 1'000'000, most_rows = 1'000'000;
+/// Of a table: they stand in memory.
+constexpr std::size_t most_kept = 10'000'000;
 
 enum class Kind { Histogram, LogHistogram, Most, Least };
 constexpr std::array<const char *, 4> kind_names{"histogram", "log-histogram", "most", "least"};
@@ -111,6 +114,13 @@ bool same_cell(const Cells &a, std::size_t i, const Cells &b, std::size_t k) {
       },
       a);
 }
+std::size_t hash_of_cell(const Cells &cells, std::size_t row) {
+  return std::visit(
+      [row](const auto &of) {
+        return std::hash<typename std::decay_t<decltype(of)>::value_type>()(of[row]);
+      },
+      cells);
+}
 void push_cell(Cells &to, const Cells &from, std::size_t row) {
   std::visit(
       [&](auto &cells) { cells.push_back(std::get<std::decay_t<decltype(cells)>>(from)[row]); },
@@ -153,6 +163,7 @@ public:
     if (group == firsts_.size()) {
       for (std::size_t c = 0; c < columns_.size(); ++c)
         push_cell(keys_[c].cells, *columns_[c], row);
+      by_hash_.emplace(hash_of(row), group);
       firsts_.push_back({order, turn_++});
     } else if (order < firsts_[group].order) {
       firsts_[group] = {order, turn_++};
@@ -160,6 +171,9 @@ public:
     return last_ = group;
   }
   [[nodiscard]] std::size_t count() const { return firsts_.size(); }
+  [[nodiscard]] std::string names() const {
+    return printable(fmt::format("{}", fmt::join(*by_, "+")));
+  }
   [[nodiscard]] double first_order(std::size_t group) const { return firsts_[group].order; }
   [[nodiscard]] std::vector<std::size_t> in_order() const {
     std::vector<std::size_t> out(count());
@@ -197,10 +211,16 @@ private:
     for (const std::size_t guess : {last_ + 1 < count() ? last_ + 1 : 0, last_})
       if (guess < count() && is(guess, row))
         return guess;
-    for (std::size_t group = 0; group < count(); ++group)
-      if (is(group, row))
-        return group;
-    return count();
+    const auto [begin, end] = by_hash_.equal_range(hash_of(row));
+    const auto found =
+        std::find_if(begin, end, [this, row](const auto &one) { return is(one.second, row); });
+    return found == end ? count() : found->second;
+  }
+  [[nodiscard]] std::size_t hash_of(std::size_t row) const {
+    std::size_t out = 0;
+    for (const Cells *column : columns_)
+      out = out * 31 + hash_of_cell(*column, row);
+    return out;
   }
   [[nodiscard]] bool is(std::size_t group, std::size_t row) const {
     for (std::size_t c = 0; c < columns_.size(); ++c)
@@ -217,6 +237,7 @@ private:
   std::vector<Column> keys_;           ///< cells by group
   std::vector<const Cells *> columns_; ///< of the rows at hand
   std::vector<First> firsts_;          ///< by group
+  std::unordered_multimap<std::size_t, std::size_t> by_hash_;
   std::size_t last_ = 0, turn_ = 0;
 };
 
@@ -284,6 +305,12 @@ protected:
   [[nodiscard]] Result<void> is_none() const {
     return fail(ErrorCode::BadInput, "what was kept of a shard is no " + text_);
   }
+  [[nodiscard]] Result<void> are_too_many() const {
+    return fail(ErrorCode::BadInput,
+                fmt::format("--reduce {}: its table has more than {} rows, with {} values of {}; "
+                            "fewer of each, or columns with fewer values behind it, were expected",
+                            printable(text_), most_kept, groups_.count(), groups_.names()));
+  }
   void add_notes(Table &out) const {
     out.note(reduction_note, text_);
     out.note(rows_note, std::to_string(rows_));
@@ -318,7 +345,10 @@ public:
     UMOV_ASSIGN(values, numbers_of(rows, wanted_.column));
     rows_ += values.size();
     for (std::size_t row = 0; row < values.size(); ++row)
-      ++counts_of(row, order_at(order, row))[bin_of(values[row])];
+      if (auto *counts = counts_of(row, order_at(order, row)))
+        ++(*counts)[bin_of(values[row])];
+      else
+        return are_too_many();
     return {};
   }
   Result<void> join(const Table &kept) override {
@@ -330,9 +360,11 @@ public:
     if (counts == nullptr || counts->size() % rows_of_group() != 0)
       return is_none();
     for (std::size_t row = 0; row < counts->size(); row += rows_of_group()) {
-      auto &all = counts_of(row, order_at(first, row));
-      for (std::size_t k = 0; k < all.size(); ++k)
-        all[k] += (*counts)[row + k];
+      auto *all = counts_of(row, order_at(first, row));
+      if (all == nullptr)
+        return are_too_many();
+      for (std::size_t k = 0; k < all->size(); ++k)
+        (*all)[k] += (*counts)[row + k];
     }
     return {};
   }
@@ -376,11 +408,15 @@ private:
     }
     return {};
   }
-  std::vector<std::int64_t> &counts_of(std::size_t row, double order) {
+  /// Null where the table would be too large.
+  std::vector<std::int64_t> *counts_of(std::size_t row, double order) {
     const std::size_t group = groups_.of(row, order);
-    if (group == counts_.size())
+    if (group == counts_.size()) {
+      if (groups_.count() * rows_of_group() > most_kept)
+        return nullptr;
       counts_.emplace_back(rows_of_group());
-    return counts_[group];
+    }
+    return &counts_[group];
   }
   /// The edges decide, whatever the last digit of a logarithm is.
   [[nodiscard]] std::size_t bin_of(double value) const {
@@ -456,22 +492,24 @@ private:
     std::vector<Key> keys;
     for (std::size_t row = 0; row < values.size(); ++row)
       keys.push_back({values[row], order_at(order, row)});
-    std::vector<std::vector<std::size_t>> wanted(kept_.size());
+    std::vector<std::pair<std::size_t, std::size_t>> wanted; // of a group, a row
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (std::isnan(values[row]))
         continue;
       const std::size_t group = groups_.of(row, order_at(first, row));
-      if (group >= kept_.size())
-        kept_.resize(group + 1);
-      if (group >= wanted.size())
-        wanted.resize(group + 1);
+      kept_.resize(groups_.count());
       if (const auto &bar = kept_[group].bar; !bar || is_before(keys[row], *bar))
-        wanted[group].push_back(row);
+        wanted.emplace_back(group, row);
     }
-    for (std::size_t group = 0; group < wanted.size(); ++group)
-      if (!wanted[group].empty())
-        add(kept_[group], rows, keys, std::move(wanted[group]));
-    return {};
+    std::ranges::sort(wanted);
+    for (auto begin = wanted.begin(); begin != wanted.end();) {
+      std::vector<std::size_t> of_group;
+      const std::size_t group = begin->first;
+      for (; begin != wanted.end() && begin->first == group; ++begin)
+        of_group.push_back(begin->second);
+      add(kept_[group], rows, keys, std::move(of_group));
+    }
+    return all_kept_ > most_kept ? are_too_many() : Result<void>();
   }
   [[nodiscard]] bool is_before(const Key &a, const Key &b) const {
     if (a.value == b.value)
@@ -485,11 +523,13 @@ private:
     rows.resize(std::min(rows.size(), wanted_.count));
   }
   void add(Kept &to, const Table &rows, const std::vector<Key> &keys,
-           std::vector<std::size_t> &&wanted) const {
+           std::vector<std::size_t> &&wanted) {
+    const std::size_t before = std::min(to.keys.size(), wanted_.count);
     sort(wanted, keys);
     for (const std::size_t row : wanted)
       to.keys.push_back(keys[row]);
     to.rows.append(picked(rows, wanted));
+    all_kept_ += std::min(to.keys.size(), wanted_.count) - before;
     if (to.keys.size() > 2 * wanted_.count)
       cut(to);
   }
@@ -508,6 +548,7 @@ private:
       one.bar = one.keys.back();
   }
   std::vector<Kept> kept_; ///< by group
+  std::size_t all_kept_ = 0;
 };
 
 /// Hands the rows of the first table to all who keep something of them.

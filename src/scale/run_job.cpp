@@ -22,6 +22,8 @@ using std::chrono::milliseconds;
 constexpr std::size_t attempts_max = 3;
 /// Of what hangs: each costs ten times what the shard should have taken.
 constexpr std::size_t attempts_at_hangs_max = 2;
+/// Of what has no memory, one after the other: where nothing was done no other shard will be.
+constexpr std::size_t exhausted_max = 10;
 constexpr double patience_after_stop_s = 30;
 
 /// The loop over workers.
@@ -166,7 +168,8 @@ private:
     if (record.status == ShardRecord::Status::Refused)
       return stop({code, record.message, {}});
     if (record.status == ShardRecord::Status::Exhausted)
-      return again_or_never(record.index, record.code, attempts_max, record.message);
+      return exhaust(record);
+    exhausted_ = 0;
     if (record.status != ShardRecord::Status::Failed) {
       ++tally_.done;
       if (record.status == ShardRecord::Status::Done)
@@ -184,6 +187,16 @@ private:
                                folder_.path().string()),
                    {}});
     give_up(record.index, record.code, attempts_[record.index] + 1, record.message);
+  }
+  void exhaust(const ShardRecord &record) {
+    if (++exhausted_ >= exhausted_max && tally_.done == 0)
+      return stop(
+          {ErrorCode::Device,
+           fmt::format("{} attempts ran out of memory one after the other, and no shard was "
+                       "done: {}",
+                       exhausted_, record.message),
+           {}});
+    again_or_never(record.index, record.code, attempts_max, record.message);
   }
   void give_up(std::size_t index, int code, std::size_t attempts, const std::string &message) {
     ++tally_.failed;
@@ -232,6 +245,7 @@ private:
   const RunSettings &settings_;
   const jobs::Monitor &monitor_;
   TimeLeft clock_;
+  std::size_t exhausted_ = 0; ///< attempts since the last that was not
   RunTally tally_;
   std::deque<std::size_t> missing_;
   std::random_device somewhere_;

@@ -26,6 +26,12 @@ std::string quoted_for_condor(const std::string &text) {
   return out + "'";
 }
 
+/// Of the process that does shards: who starts it takes some, and batch systems end a task that has
+/// more than it asked for.
+std::size_t memory_of_work_mb(const ScriptSettings &settings) {
+  return settings.memory_mb * 9 / 10;
+}
+
 } // namespace
 
 std::string slurm_script(const JobFolder &folder, const ScriptSettings &s) {
@@ -46,11 +52,11 @@ std::string slurm_script(const JobFolder &folder, const ScriptSettings &s) {
       "#SBATCH --output={11}\n"
       "{12}"
       "exec {4} scale run {5} --part \"$SLURM_ARRAY_TASK_ID/{3}\" \\\n"
-      "     --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" -q\n",
+      "     --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" --memory-mb {13} -q\n",
       folder.lock().shards(), folder.lock().per_shard, folder.lock().unit, s.tasks,
       quoted(s.program), quoted(path), s.tasks - 1, s.threads, s.memory_mb, minutes / 60,
       minutes % 60, quoted(path + "/log/%A_%a.txt"),
-      s.partition.empty() ? "" : "#SBATCH --partition=" + s.partition + "\n");
+      s.partition.empty() ? "" : "#SBATCH --partition=" + s.partition + "\n", memory_of_work_mb(s));
 }
 
 std::string condor_script(const JobFolder &folder, const ScriptSettings &s) {
@@ -60,7 +66,8 @@ std::string condor_script(const JobFolder &folder, const ScriptSettings &s) {
       "that\n"
       "# the same file goes on after whatever ended it. The folder must be seen by all machines.\n"
       "executable = {4}\n"
-      "arguments = \"scale run {9} --part $(Process)/{3} --threads {6} -q\"\n"
+      "arguments = \"scale run {9} --part $(Process)/{3} --threads {6} "
+      "--memory-mb {10} -q\"\n"
       "transfer_executable = false\n"
       "should_transfer_files = no\n"
       "request_cpus = {6}\n"
@@ -71,7 +78,7 @@ std::string condor_script(const JobFolder &folder, const ScriptSettings &s) {
       "log = {5}/log/$(Cluster).log\n"
       "queue {3}\n",
       folder.lock().shards(), folder.lock().per_shard, folder.lock().unit, s.tasks, s.program, path,
-      s.threads, s.memory_mb, s.wall_s, quoted_for_condor(path));
+      s.threads, s.memory_mb, s.wall_s, quoted_for_condor(path), memory_of_work_mb(s));
 }
 
 } // namespace umov::scale

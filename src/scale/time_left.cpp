@@ -5,8 +5,10 @@
 namespace umov::scale {
 
 void TimeLeft::took(std::size_t units, double seconds, bool is_first) {
-  if (is_first && first_s_ > 0.2 * unit_s_ * static_cast<double>(units))
+  if (is_first && first_s_ > 0.2 * unit_s_ * static_cast<double>(units)) {
+    is_first_over_ = true;
     return;
+  }
   const Sum before = sums_.back();
   sums_.push_back({before.units + static_cast<double>(units), before.seconds + seconds});
 }
@@ -17,7 +19,7 @@ double TimeLeft::left_s(std::size_t units, std::span<const std::size_t> units_in
   const bool is_known = all.units > early.units;
   const double unit_s =
       is_known ? (all.seconds - early.seconds) / (all.units - early.units) : unit_s_;
-  const double first_s = is_known ? 0 : first_s_;
+  const double first_s = is_known || is_first_over_ ? 0 : first_s_;
   double work = unit_s * static_cast<double>(units), longest = 0;
   for (std::size_t k = 0; k < busy_s.size(); ++k) {
     const double whole = first_s + unit_s * static_cast<double>(units_in_hand[k]);

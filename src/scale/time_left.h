@@ -27,6 +27,7 @@ private:
     double units, seconds;
   };
   double unit_s_, first_s_;
+  bool is_first_over_ = false;
   std::vector<Sum> sums_{{0, 0}}; ///< of all shards up to each
 };
 

@@ -418,6 +418,53 @@ def test_a_reduced_search_without_a_pass_ends_as_the_plain_one(umov, tmp_path, r
     assert not (tmp_path / "merged.csv").exists()
 
 
+def test_what_a_folder_does_not_keep_is_refused(umov, scenario, tmp_path):
+    """Without a verb the job is that of the folder: another --reduce would be none."""
+    command = signature_of(scenario, 20)
+    for job, kept in (("plain", []), ("kept", ["--reduce", "most:intensity:2"])):
+        assert umov("scale", "lock", *kept, job, *command).code == 0
+        for verb in ("run", "plan", "script slurm"):
+            done = umov("scale", *verb.split(), "--reduce", "most:intensity:3", job)
+            assert done.code == 2 and "most:intensity:3" in done.err and ("most:intensity:2" if kept else "all rows") in done.err, done.err
+    assert not shards(tmp_path / "plain") and not shards(tmp_path / "kept")
+    assert umov("scale", "run", "--reduce", "most:intensity:2", "kept").code == 0
+
+
+def test_a_cluster_is_told_all_that_it_was_given(umov, scenario, tmp_path, monkeypatch):
+    """python3 is one that only says its words: Dask's side is tested where Dask is."""
+    assert umov("scale", "lock", "job", *signature_of(scenario, 20)).code == 0
+    (tmp_path / "bin").mkdir()
+    python = tmp_path / "bin/python3"
+    python.write_text('#!/bin/sh\nshift 2\necho "$@"\n')
+    python.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:{os.environ['PATH']}")
+    done = umov("scale", "run", "--cluster", "local:2", "--threads", 3, "--timeout-s", 7.5, "--memory-mb", 300, "--join", "-q", "job")
+    assert done.code == 0, done.err
+    assert done.out.endswith("--threads 3 --timeout-s 7.5 --memory-mb 300 --join --quiet\n") and "--cluster local:2" in done.out, done.out
+    assert "--threads" not in umov("scale", "run", "--cluster", "local:2", "job").out
+    for more in (["--part", "0/2"], ["--workers", 2]):
+        refused = umov("scale", "run", "--cluster", "local:2", *more, "job")
+        assert refused.code == 2 and more[0] in refused.err, refused.err
+
+
+def test_a_job_without_memory_for_any_shard_ends_soon(umov, scenario, tmp_path):
+    """Three bands of a million bins are hundreds of megabytes: 20 shards, of which each would be tried three times."""
+    assert umov("scale", "lock", "--per-shard", 20, "--reduce", "histogram:intensity:0:1:1000000", "job", *signature_of(scenario)).code == 0
+    done = umov("scale", "run", "--memory-mb", 120, "--threads", 1, "job")
+    assert done.code == 6 and "10 attempts ran out of memory" in done.err and "--memory-mb" in done.err, done.err
+    assert not shards(tmp_path / "job")
+
+
+def test_scripts_and_repairs_hold_processes_to_their_memory(umov, scenario, tmp_path):
+    assert umov("scale", "lock", "--per-shard", 20, "--reduce", "histogram:intensity:0:1:1000000", "job", *signature_of(scenario, 20)).code == 0
+    for system in ("slurm", "condor"):
+        script = umov("scale", "script", system, "--memory-mb", 1000, "job")
+        assert script.code == 0 and "--memory-mb 900 -q" in script.out, script.out
+    assert umov("scale", "repair", "--memory-mb", 120, "job").code == 3
+    assert "needs more memory than" in json.loads((tmp_path / "job/failed/00000000.json").read_text())["message"]
+    assert umov("scale", "repair", "job").code == 0
+
+
 def test_passes_without_what_is_asked_for_are_passes(umov, tmp_path):
     """Without a model no pass has a magnitude: none is kept, and yet there are some."""
     assert umov("scale", "run", "--reduce", "least:mag_min:3", "job", *passes_of_thirty(tmp_path)).code == 0
@@ -426,7 +473,7 @@ def test_passes_without_what_is_asked_for_are_passes(umov, tmp_path):
 
 
 @pytest.mark.parametrize("text,said", [
-    ("mean:intensity", "no such reduction"), ("histogram:intensity:1:0:5", "LOW < HIGH"), ("log-histogram:intensity:0:1:5", "0 < LOW < HIGH"),
+    ("mean:intensity", "no such reduction"), ("histogram:intensity:1:0:5", "LOW < HIGH"), ("histogram:intensity:-1e308:1e308:4", "too far apart"), ("log-histogram:intensity:0:1:5", "0 < LOW < HIGH"),
     ("histogram:intensity:0:1", "a number of bins"), ("most:intensity:0", "from 1 to a million"), ("most:brightness:5", "there are pose, band"),
     ("most:band:5", "no column of numbers"), ("most:intensity:5:sun_x", "whole numbers was expected"),
 ])

@@ -31,7 +31,8 @@ struct RunTally {
 
 /// Does what is missing. A shard that ends its process or runs out of memory is tried three times,
 /// one that hangs twice; what is wrong with its input is wrong for good and told; a full disk ends
-/// it all (Device). Interrupted after a stop, when the shards in hand are done or half a minute is
+/// it all (Device), and so do ten attempts one after the other without memory before a shard is
+/// done. Interrupted after a stop, when the shards in hand are done or half a minute is
 /// over.
 Result<RunTally> run_job(const JobFolder &folder, const RunSettings &settings,
                          const jobs::Monitor &monitor);

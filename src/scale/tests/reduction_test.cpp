@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <gtest/gtest.h>
 #include <limits>
 #include <span>
@@ -155,6 +156,49 @@ TEST(Reductions, OfManyRowsAreWhatSortingThemGives) {
   ASSERT_EQ(poses.size(), 50u);
   for (std::size_t k = 0; k < 50; ++k)
     EXPECT_EQ(poses[k], static_cast<std::int64_t>(order[k]));
+}
+
+TEST(Reductions, AreOfAnyNumberOfValuesInTimeThatGrowsWithIt) {
+  // 200,000 values of pose, in an order in which none follows that before it: by comparing each
+  // with each, 2e10 comparisons; by now .2 s.
+  const std::clock_t begin = std::clock();
+  constexpr std::size_t count = 200'000;
+  std::vector<double> values(count, 1);
+  std::vector<std::string> bands(count, "V");
+  Table all = rows(values, bands);
+  const auto reducer = make_reducer("histogram:intensity:0:2:1:pose");
+  ASSERT_TRUE((*reducer)->take(all));
+  Table turned;
+  auto poses = cells<std::int64_t>(all, "pose");
+  for (std::size_t k = 0; k < count; ++k)
+    poses[k] = static_cast<std::int64_t>(k * 77'777 % count);
+  turned.add("pose", "", "number", std::move(poses));
+  turned.add("intensity", "m2 / sr", "light", std::move(values));
+  ASSERT_TRUE((*reducer)->take(turned));
+  const auto counts = cells<std::int64_t>((*reducer)->table(), "count");
+  ASSERT_EQ(counts.size(), 4 * count);
+  EXPECT_EQ(counts[0], 2);
+  EXPECT_EQ(counts[4 * (count - 1)], 2);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 10);
+}
+
+TEST(Reductions, ThatWouldFillTheMemoryAreRefusedByName) {
+  const Table ten = rows(std::vector<double>(11, 1), std::vector<std::string>(11, "V"));
+  const auto histogram = make_reducer("histogram:intensity:0:2:1000000:pose");
+  const auto done = (*histogram)->take(ten);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, ErrorCode::BadInput);
+  EXPECT_NE(done.error().message.find("histogram:intensity:0:2:1000000:pose"), std::string::npos);
+  EXPECT_NE(done.error().message.find("10000000 rows"), std::string::npos);
+}
+
+TEST(Reductions, WhoseEdgesAreNoRisingNumbersAreRefused) {
+  for (const char *text :
+       {"histogram:x:-1e308:1e308:4", "log-histogram:x:1e-300:1e300:4",
+        "histogram:x:1:1.0000000000000002:4", "log-histogram:x:1:1.000000000000001:100",
+        "histogram:x:0:inf:4", "histogram:x:0:nan:4"})
+    EXPECT_FALSE(make_reducer(text)) << text;
+  EXPECT_TRUE(make_reducer("histogram:x:-1e307:1e307:1000000"));
 }
 
 TEST(Reductions, OfNoRowHaveTheirColumns) {

@@ -31,6 +31,8 @@ TEST(TimeLefts, LeaveOutFirstShardsThatLearnMuch) {
     clock->took(100, 50, true);
   const std::vector<std::size_t> in_hand{100};
   EXPECT_NEAR(rays.left_s(100, in_hand, std::vector<double>{0}), 50, 1e-9);
+  // Masks are there, and nothing is known yet of what the others take: 200 times .1 s.
+  EXPECT_NEAR(masks.left_s(200, in_hand, std::vector<double>{0}), 20, 1e-9);
   masks.took(100, 12);
   EXPECT_NEAR(masks.left_s(200, in_hand, std::vector<double>{0}), 24, 1e-9);
 }
