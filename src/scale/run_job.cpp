@@ -193,8 +193,8 @@ private:
       return stop(
           {ErrorCode::Device,
            fmt::format("{} attempts ran out of memory one after the other, and no shard was "
-                       "done: {}",
-                       exhausted_, record.message),
+                       "done: {} umov scale run {} goes on.",
+                       exhausted_, record.message, folder_.path().string()),
            {}});
     again_or_never(record.index, record.code, attempts_max, record.message);
   }
