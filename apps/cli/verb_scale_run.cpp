@@ -5,12 +5,14 @@
 #include "verb_scale.h"
 
 #include <fmt/format.h>
+#include <string>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/scale/merge.h>
 #include <umov/scale/run_job.h>
 #include <unistd.h>
+#include <vector>
 
 namespace umov::cli {
 namespace {

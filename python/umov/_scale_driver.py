@@ -108,6 +108,7 @@ class Driver:
         self.futures: dict[str, Any] = {}
         self.ended: queue.Queue[Any] = queue.Queue()
         self.left = len(result.missing)
+        self.failed_before = result._names_of_failed()
         self.done = self.failed = self.lost = self.exhausted = 0
         self.seconds: list[float] = []
         self.first_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) / threads
@@ -182,6 +183,8 @@ class Driver:
         self.lost = 0
         if record["status"] in ("done", "there"):
             self.done += 1
+            if (name := f"{record['index']:08d}.json") in self.failed_before:
+                self.result._forget_failed(name)
             # The first shard of a worker says nothing of the others where much comes before it: masks.
             if record["status"] == "done" and (self.done > self.workers or self.first_s < 0.2 * self.predicted_s):
                 self.seconds.append(record["seconds"])

@@ -185,6 +185,16 @@ class Result:
             return [json.loads(text) for text in texts if text is not None]
         return [json.loads(path.read_text()) for path in sorted((pathlib.Path(self.folder) / "failed").glob("*.json"))]
 
+    def _names_of_failed(self) -> set[str]:
+        return set(self._store.names("failed") if self._store else
+                   (path.name for path in (pathlib.Path(self.folder) / "failed").glob("*.json")))
+
+    def _forget_failed(self, name: str) -> None:
+        if self._store:
+            self._store.remove(f"failed/{name}")
+        else:
+            (pathlib.Path(self.folder) / "failed" / name).unlink(missing_ok=True)
+
     def _tell_failed(self, name: str, text: str) -> None:
         if self._store:
             self._store.write(name, text.encode())
