@@ -1,16 +1,19 @@
 """A Dask scheduler and its workers as processes of their own, behind the loopback: what LocalCluster hides in one."""
 import os
+import pathlib
 import subprocess
 import sys
 import time
 
+PYTHON = os.environ.get("UMOV_PYTHON", str(pathlib.Path(__file__).resolve().parents[2] / "build/release/python"))
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 COMMON = ("--host", "127.0.0.1", "--no-dashboard")
 
 
 def _dask(what, *words, **more):
     program = f"import sys; from distributed.cli.dask_{what} import main; main()"
-    return subprocess.Popen([sys.executable, "-c", program, *COMMON, *words], **QUIET, **more)
+    env = {**os.environ, "PYTHONPATH": PYTHON}  # what is submitted are functions of umov
+    return subprocess.Popen([sys.executable, "-c", program, *COMMON, *words], env=env, **QUIET, **more)
 
 
 def scheduler(place, **more):

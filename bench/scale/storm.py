@@ -97,9 +97,11 @@ class DaskCluster:
         self.nannies = [one for one in self.nannies if one.poll() is None]
         while len(self.nannies) < 2:
             self.nannies.append(dask_here.worker(self.place, self.file, nanny=True))
-        if self.driver is None or self.driver.poll() not in (None, 0):
+        ended = self.driver and self.driver.poll()
+        assert ended in (None, 0, -signal.SIGKILL), f"the driver ended by itself with {ended}"
+        if self.driver is None or ended:
             self.driver = subprocess.Popen([sys.executable, "-m", "umov.scale", "run", self.folder, "--cluster", self.address],
-                                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": sys.path[0]})
+                                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": dask_here.PYTHON})
 
     def victims(self):
         """Processes by what they are."""
@@ -198,6 +200,7 @@ def main():
             folder, command, count = job("dask", given.dask * given.dask_life_s, given.dask_shard_s)
             with Stopwatch() as took:
                 killed, none = dask_storm(place, folder, given.dask, given.dask_life_s, rng)
+            assert shards(folder), "no shard was done: nothing was tested"
             time.sleep(6)  # what a dead parent leaves ends within five seconds
             print(f"Dask: {count} shards of {given.dask_shard_s} s, {sum(killed.values())} kills ({dict(killed)}) in {took.wall:.0f} s, {none} of "
                   f"them before another shard was done; {len(shards(folder))} shards done then, {len(left_over(folder))} processes left; {load()}",
