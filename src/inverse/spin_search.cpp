@@ -54,6 +54,9 @@ CurveErrors tempered(CurveErrors errors, double floor) {
   return errors;
 }
 
+/// Turnings that the light itself is asked about.
+constexpr std::size_t most_starts = 60;
+
 /// A turning and how well it does.
 struct Candidate {
   Turning turning;
@@ -220,7 +223,9 @@ void PeriodSearch::fan_out(std::span<const TurningFit> fits, double span_s, doub
 bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
   const auto &curve = coarse_.curve();
   std::size_t kept = 300;
-  constexpr std::size_t epochs_max = 120, last = 30;
+  // Light between nodes is some per cent off: it prefers others to the truth by tens of chi-square,
+  // and each of them comes as often as the body looks alike. Half of `last` are left in the end.
+  constexpr std::size_t epochs_max = 120, last = 120, fanned = 30;
   bool is_fanned = false;
   for (std::optional<double> reach_s = 1.25 * period_s_; reach_s;) {
     const auto epochs = within(curve, *reach_s, epochs_max);
@@ -242,7 +247,7 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
     is_fanned = reach_s && is_pause(told_s, *reach_s);
     found.clear();
     if (is_fanned)
-      fan_out(std::span(fits).first(std::min(last, fits.size())), inverse::span_of(curve, epochs),
+      fan_out(std::span(fits).first(std::min(fanned, fits.size())), inverse::span_of(curve, epochs),
               *reach_s, rough.measurements(), found);
     else
       for (const TurningFit &fit : fits)
@@ -257,9 +262,8 @@ std::vector<Candidate> PeriodSearch::run() {
   if (!look_at_grid(found) || !lengthen(found))
     return {};
   std::vector<Candidate> out;
-  constexpr std::size_t most = 16;
   for (const Candidate &c : found)
-    if (out.size() < most && std::ranges::none_of(out, [&](const Candidate &o) {
+    if (out.size() < most_starts && std::ranges::none_of(out, [&](const Candidate &o) {
           return is_near(o.turning, c.turning, 2 * degree, inverse::span_of(coarse_.curve()));
         }))
       out.push_back(c);
@@ -344,8 +348,7 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
     found_of_all.insert(found_of_all.end(), found.begin(), found.end());
   }
   // All were compared at the same epochs: the last fits, by the light itself, are for the best.
-  constexpr std::size_t most = 24;
-  keep_best(found_of_all, most);
+  keep_best(found_of_all, most_starts);
   UMOV_ASSIGN(answer, refine_spin(model, first, turnings_of(found_of_all), options));
   for (PoseMode &mode : answer.modes)
     move(mode, -shift);

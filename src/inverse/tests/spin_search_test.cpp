@@ -61,6 +61,38 @@ TEST(SpinSearch, PeriodAxisAndAttitudeComeBack) {
   EXPECT_EQ(found, trials);
 }
 
+TEST(SpinSearch, PlacesThatCoarseLightPrefersDoNotCrowdOutTheTruth) {
+  // Coarse light of a box whose colours are alike, and a little the wrong way round: it finds 24
+  // spins, the turns of a cube, of which the true one is among the worst.
+  const Box box, plain(true);
+  const auto mixed = [&](double share) -> PoseLighting {
+    return [&box, &plain, share](std::span<const Pose> poses, StokesTable &out) {
+      StokesTable own;
+      const bool is_whole = box(poses, own) && plain(poses, out);
+      for (std::size_t k = 0; k < out.i.size(); ++k)
+        out.i[k] = std::max(0.0, (1 - share) * out.i[k] + share * own.i[k]);
+      return is_whole;
+    };
+  };
+  const PoseLighting body = mixed(0.3), other_colours = mixed(-0.05);
+  const double period = 60;
+  const Turning truth{attitude_grid(1009)[100],
+                      normalized(Vec3<Body>{0.5, 0.7, -0.3}) * (2 * pi / period)};
+  ObservedCurve curve = pass(80);
+  observe(curve, body, truth, 50, 6);
+  SpinRequest request;
+  request.periods_s = {period * 1.01};
+  request.coarse = DirectionTable::lighting(DirectionTable::make(other_colours, 24, 0, 0), 0);
+  request.attitudes = 2000;
+  request.axes = 100;
+  const auto answer = search_spin(curve, body, {0, 1}, request, small());
+  ASSERT_TRUE(answer) << answer.error().text();
+  const Turning &best = answer->pose.modes.front().turning;
+  // As in PeriodAxisAndAttitudeComeBack: the nearest of the others is a quarter turn away.
+  EXPECT_LT(angle_between(best.attitude, truth.attitude), 5 * pi / 180);
+  EXPECT_LT(norm(best.rate_rad_s - truth.rate_rad_s), 0.01 * norm(truth.rate_rad_s));
+}
+
 TEST(SpinSearch, TurnsInAPauseBetweenPassesAreCounted) {
   // 400 s, and 400 s again after eleven hours of 660 turns: the first pass leaves their number
   // open.
