@@ -370,7 +370,7 @@ namespace {
 
 /// Few that stand for all epochs where many attitudes are fitted.
 std::vector<std::size_t> epochs_of_first_steps(const CurveModel &model) {
-  return inverse::some_epochs(model.curve().epochs.size(), 60);
+  return inverse::epochs_out_of_step(model.curve().epochs.size(), 60);
 }
 
 /// The search is `done` of these.
@@ -425,18 +425,24 @@ Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
   return settled_fits(models.last, from, Freedom::Attitude, errors, options);
 }
 
-/// Chi-square of the best of some places after a few steps on few epochs, as of all epochs; less
-/// than 0 if it was stopped.
+/// Chi-square of the best of some places after a few steps on few epochs, as of all epochs; where
+/// that is more than `far`, after as many steps as a fit takes; less than 0 if it was stopped.
 double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> &places,
-                            const CurveLikelihood &likelihood, unsigned threads) {
+                            const CurveLikelihood &likelihood, double far, unsigned threads) {
   const auto some = epochs_of_first_steps(model);
   const CurveLikelihood few(model.curve(), likelihood.errors(), some);
-  const auto fits =
-      inverse::fit_turnings(model, few, places, some, {Freedom::Attitude, 3, 0, 0, 1e-3, threads});
-  if (fits.empty())
-    return -1;
-  return fits.front().at.chi2 * static_cast<double>(likelihood.measurements()) /
-         static_cast<double>(std::max<std::size_t>(few.measurements(), 1));
+  const double all = static_cast<double>(likelihood.measurements()) /
+                     static_cast<double>(std::max<std::size_t>(few.measurements(), 1));
+  inverse::FitPlan plan{Freedom::Attitude, 3, 0, 0, 1e-3, threads};
+  auto fits = inverse::fit_turnings(model, few, places, some, plan);
+  if (!fits.empty() && fits.front().at.chi2 * all > far) {
+    // A search forgives a quarter of I, which can be a hundred times the errors: a good place may
+    // be far off yet.
+    constexpr std::size_t handful = 5;
+    plan.iterations = 12;
+    fits = inverse::fit_turnings(model, few, best_of(fits, handful), some, plan);
+  }
+  return fits.empty() ? -1 : fits.front().at.chi2 * all;
 }
 
 } // namespace
@@ -456,15 +462,15 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
 }
 
 Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options) {
-  // Ten standard deviations in each measurement: no further step makes an explanation of that.
-  constexpr double far = 100;
   FoundErrors errors(models.last, options);
   UMOV_ASSIGN(places, find_places(models, errors, options));
+  // Ten standard deviations in each measurement: no further step makes an explanation of that.
+  const double far = 100 * static_cast<double>(errors.likelihood().measurements());
   const double seen =
-      chi2_after_few_steps(models.first, places.best, errors.likelihood(), options.threads);
+      chi2_after_few_steps(models.first, places.best, errors.likelihood(), far, options.threads);
   if (seen < 0)
     return tl::unexpected(stopped());
-  if (seen > far * static_cast<double>(errors.likelihood().measurements()))
+  if (seen > far)
     return seen;
   UMOV_ASSIGN(fits, fit_places(models, places.best, errors, options));
   return fits.front().at.chi2;

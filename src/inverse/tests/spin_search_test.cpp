@@ -1,3 +1,4 @@
+#include "inverse/some_epochs.h"
 #include "inverse/tests/box_light.h"
 
 #include <umov/inverse/direction_table.h>
@@ -119,6 +120,25 @@ TEST(SpinSearch, TurnsInAPauseBetweenPassesAreCounted) {
   // S/N 50 and 156 rows tell phases to a degree: a turn more or less would be 1.5e-3 of the rate.
   EXPECT_LT(angle_between(best.turning.attitude, truth.attitude), 3 * pi / 180);
   EXPECT_NEAR(norm(best.turning.rate_rad_s) / norm(truth.rate_rad_s), 1, 2e-5);
+}
+
+TEST(SpinSearch, AFewEpochsSeeABodyFromAllSidesWhateverItsPeriod) {
+  // Sixty epochs in even steps of 1,181, at 2 s: every twentieth, one phase of a turn in 40 s.
+  constexpr std::size_t count = 60;
+  for (const std::size_t epochs : {61u, 100u, 1181u, 1200u, 5000u})
+    for (const std::size_t turn : {10u, 20u, 40u, 60u}) {
+      const auto some = inverse::epochs_out_of_step(epochs, count);
+      ASSERT_EQ(some.size(), count);
+      EXPECT_LT(some.back(), epochs);
+      std::vector<int> seen(5); // fifths of a turn; 12 of each are even
+      for (std::size_t k = 0; k < count; ++k) {
+        EXPECT_TRUE(k == 0 || some[k] > some[k - 1]) << epochs;
+        ++seen[some[k] % turn * 5 / turn];
+      }
+      // Chance would leave fewer than 4 in one of the five 1 time in 200.
+      EXPECT_GE(*std::ranges::min_element(seen), 4) << epochs << " " << turn;
+    }
+  EXPECT_EQ(inverse::epochs_out_of_step(3, count), (std::vector<std::size_t>{0, 1, 2}));
 }
 
 TEST(SpinSearch, WithoutAPeriodThereIsNone) {
