@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <umov/core/parallel.h>
 
 namespace umov {
@@ -73,7 +74,10 @@ std::shared_ptr<const DirectionTable> DirectionTable::make(const PoseLighting &l
   return out;
 }
 
-std::shared_ptr<const DirectionTable> DirectionTable::halved() const {
+Result<std::shared_ptr<const DirectionTable>> DirectionTable::halved() const {
+  if (cells_ == 0 || cells_ % 2 != 0)
+    return fail(ErrorCode::BadInput, "a table of " + std::to_string(cells_) +
+                                         " cells a side has no half: it takes an even number");
   auto out = std::make_shared<DirectionTable>();
   out->cells_ = cells_ / 2;
   out->bands_ = bands_;

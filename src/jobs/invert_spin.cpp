@@ -83,17 +83,17 @@ Table periods_table(const SpinAnswer &answer, const std::vector<double> &tried) 
   return out;
 }
 
-/// What makes a search for a spin quick: light of all pairs of directions, once. False if it was
-/// stopped.
-bool put_coarse_light(const PoseLighting &light, const ObservedCurve &curve, unsigned threads,
-                      SpinRequest &out) {
+/// What makes a search for a spin quick: light of all pairs of directions, once.
+Result<void> put_coarse_light(const PoseLighting &light, const ObservedCurve &curve,
+                              unsigned threads, SpinRequest &out) {
   constexpr std::size_t cells = 36; // 5 deg; 1.9 million pairs
   auto table = DirectionTable::make(light, cells, curve.epochs.front().sun_radius_rad, threads);
   if (!table)
-    return false;
-  out.coarsest = DirectionTable::lighting(table->halved(), threads);
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+  UMOV_ASSIGN(half, table->halved());
+  out.coarsest = DirectionTable::lighting(std::move(half), threads);
   out.coarse = DirectionTable::lighting(std::move(table), threads);
-  return true;
+  return {};
 }
 
 /// `is_doubted`: the period itself, not the attitude alone.
@@ -161,9 +161,8 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   asked.periods_s = periods;
   asked.axis = axis_of(spin.axis);
   asked.parts = parts_of(ready);
-  if (!put_coarse_light(quick_lighting(ready, options.threads, monitor), curve, options.threads,
-                        asked))
-    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+  UMOV_TRY(put_coarse_light(quick_lighting(ready, options.threads, monitor), curve, options.threads,
+                            asked));
   asked.first = first_lighting(ready, options.threads, monitor);
   const auto searched = searched_lighting(ready, options.threads, monitor);
   UMOV_ASSIGN(answer, search_spin(curve, searched, ready.observed.column, asked,

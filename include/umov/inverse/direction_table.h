@@ -3,6 +3,7 @@
 // second.
 
 #include <memory>
+#include <umov/core/result.h>
 #include <umov/inverse/curve_model.h>
 
 namespace umov {
@@ -15,9 +16,9 @@ public:
   /// swapped give the same I and Q), with a Sun of one size. Nothing if it was stopped.
   static std::shared_ptr<const DirectionTable> make(const PoseLighting &light, std::size_t cells,
                                                     double sun_radius_rad, unsigned threads);
-  /// The same with every second node of an even number of cells: a sixteenth of the bytes, which
-  /// stays in a processor's cache.
-  [[nodiscard]] std::shared_ptr<const DirectionTable> halved() const;
+  /// The same with every second node: a sixteenth of the bytes, which stays in a processor's cache.
+  /// BadInput for an odd number of cells, whose second nodes do not end at the octahedron's edge.
+  [[nodiscard]] Result<std::shared_ptr<const DirectionTable>> halved() const;
   /// Looks up; `table` is kept alive by it. U and V are 0.
   static PoseLighting lighting(std::shared_ptr<const DirectionTable> table, unsigned threads);
 

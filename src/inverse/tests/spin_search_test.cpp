@@ -27,9 +27,43 @@ TEST(DirectionTable, IsNearTheLightBetweenItsNodes) {
   EXPECT_LT(off[off.size() * 9 / 10], 0.1);
 }
 
+TEST(DirectionTable, HalfOfItsNodesAreATableOfItsOwn) {
+  const Box box;
+  const auto table = DirectionTable::make(box, 36, 0, 2), few = DirectionTable::make(box, 18, 0, 2);
+  ASSERT_TRUE(table && few);
+  const auto half = table->halved();
+  ASSERT_TRUE(half) << half.error().text();
+  std::vector<Pose> poses;
+  for (std::uint64_t k = 0; k < 200; ++k)
+    poses.push_back(random_pose(2, k, Angle::degrees(20 + 0.7 * static_cast<double>(k))));
+  StokesTable halved, made;
+  ASSERT_TRUE(DirectionTable::lighting(*half, 2)(poses, halved) &&
+              DirectionTable::lighting(few, 2)(poses, made));
+  for (std::size_t k = 0; k < made.i.size(); ++k) {
+    EXPECT_NEAR(halved.i[k], made.i[k], 1e-5); // floats of I up to 2
+    EXPECT_NEAR(halved.q[k], made.q[k], 1e-5);
+  }
+}
+
+TEST(DirectionTable, AnOddNumberOfCellsHasNoHalf) {
+  const auto table = DirectionTable::make(Box(), 7, 0, 1);
+  ASSERT_TRUE(table);
+  const auto half = table->halved();
+  ASSERT_FALSE(half);
+  EXPECT_EQ(half.error().code, ErrorCode::BadInput);
+}
+
 TEST(SpinSearch, PeriodAxisAndAttitudeComeBack) {
   const Box box;
-  const auto coarse = DirectionTable::lighting(DirectionTable::make(box, 24, 0, 0), 0);
+  const auto table = DirectionTable::make(box, 24, 0, 0);
+  const auto half = table->halved();
+  ASSERT_TRUE(half) << half.error().text();
+  const PoseLighting slightly_off = [&](std::span<const Pose> poses, StokesTable &out) {
+    const bool is_whole = box(poses, out);
+    for (std::size_t k = 0; k < out.i.size(); ++k)
+      out.i[k] *= 1 + 0.03 * std::sin(9 * poses[k / out.bands].sun.x);
+    return is_whole;
+  };
   int found = 0;
   constexpr int trials = 1;
   for (std::uint64_t t = 0; t < trials; ++t) {
@@ -42,8 +76,10 @@ TEST(SpinSearch, PeriodAxisAndAttitudeComeBack) {
     observe(curve, box, truth, 50, t);
     SpinRequest request;
     request.periods_s = {period * 1.01, period * 2.02};
-    request.coarse = coarse;
-    request.attitudes = 2000;
+    request.coarse = DirectionTable::lighting(table, 0);
+    request.coarsest = DirectionTable::lighting(*half, 0);
+    request.first = slightly_off;
+    request.attitudes = 2000; // x 100: more than are left after the first epochs
     request.axes = 100;
     SearchOptions options = small();
     const auto answer = search_spin(curve, box, {0, 1}, request, options);
