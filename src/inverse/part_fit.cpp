@@ -36,7 +36,8 @@ private:
   void put_rows(const Weighed &data);
   void set(const VectorXd &off);
   [[nodiscard]] double change(std::size_t unknown, std::size_t at) const;
-  double residuals();
+  void residuals();
+  [[nodiscard]] double misfit() const;
   bool trust();
   void jacobian();
   void eliminate(MatrixXd &normal) const;
@@ -167,8 +168,8 @@ double PartFit::change(std::size_t unknown, std::size_t at) const {
   return factor_[k] * (is_slope ? by_slope_[k] : model_.parts[part].sd);
 }
 
-/// Puts residuals of the best gains; returns chi-square without the parts' priors.
-double PartFit::residuals() {
+/// Puts residuals of the best gains.
+void PartFit::residuals() {
   sums_ = GainSums{std::vector<double>(of_.groups_, 0), std::vector<double>(of_.groups_, 0)};
   for (std::size_t k = 0; k < linear_.size(); ++k)
     light_[k] = linear_[k].light;
@@ -192,7 +193,22 @@ double PartFit::residuals() {
     residual_[static_cast<Index>(at)] = root_[at] * row.l_qq * dq;
     residual_[static_cast<Index>(at + 1)] = root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
   }
-  return residual_.squaredNorm() + gains_.prior_chi2;
+}
+
+/// What a fit lessens, without the parts' priors: chi-square, or -2 ln of the mixture, which falls
+/// with every step of reweighted least squares while chi-square rises as numbers are trusted more.
+double PartFit::misfit() const {
+  if (!(of_.errors_.outlier_share > 0))
+    return residual_.squaredNorm() + gains_.prior_chi2;
+  const double wide = of_.errors_.outlier_factor, share = of_.errors_.outlier_share;
+  double out = gains_.prior_chi2;
+  for (std::size_t k = 0; k < root_.size(); ++k) {
+    const double x2 = std::pow(residual_[static_cast<Index>(k)] / root_[k], 2);
+    // The wide one taken out, whose exponential would be 0 far out.
+    const double beyond = std::exp(-x2 / 2 * (1 - 1 / (wide * wide)));
+    out += x2 / (wide * wide) - 2 * std::log((1 - share) * beyond + share / wide);
+  }
+  return out;
 }
 
 /// Numbers that are likely wrong count less, each by itself, as in the mixture of `compare`; false
@@ -288,7 +304,8 @@ bool PartFit::settle(VectorXd &best) {
   constexpr int rounds = 8;
   for (int round = 0; round < rounds && !unknowns_.empty(); ++round) {
     set(off);
-    const double objective = residuals() + off.squaredNorm();
+    residuals();
+    const double objective = misfit() + off.squaredNorm();
     if (!(objective < least)) { // too far: half of the way
       if ((off - best).cwiseAbs().maxCoeff() < 1e-3)
         return false;
@@ -310,12 +327,13 @@ bool PartFit::settle(VectorXd &best) {
 CurveLikelihood::FittedLight PartFit::run(std::span<const double> near) {
   VectorXd off = VectorXd::Zero(static_cast<Index>(unknowns_.size()));
   bool is_at_rest = true;
-  if (!near.empty() && near.size() == unknowns_.size()) {
+  // One step more of numbers that are trusted anew is no derivative: reweighting comes to rest in
+  // many steps, each a part of what is left.
+  const bool is_mixture = of_.errors_.outlier_share > 0;
+  if (!is_mixture && !near.empty() && near.size() == unknowns_.size()) {
     std::ranges::copy(near, off.begin());
     set(off);
     residuals();
-    if (trust())
-      residuals();
     step(off);
   } else {
     is_at_rest = settle(off);

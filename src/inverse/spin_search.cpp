@@ -347,7 +347,8 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
       return tl::unexpected(stopped());
     found_of_all.insert(found_of_all.end(), found.begin(), found.end());
   }
-  // All were compared at the same epochs: the last fits, by the light itself, are for the best.
+  // Those of each period were compared at the same epochs, which are of the whole curve. Quick
+  // light tells then which of the best the light itself is asked about.
   keep_best(found_of_all, most_starts);
   UMOV_ASSIGN(answer, refine_spin(model, first, turnings_of(found_of_all), options));
   for (PoseMode &mode : answer.modes)

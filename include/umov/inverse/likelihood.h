@@ -88,8 +88,8 @@ public:
 
   /// Holds a model against the curve; its parts are fitted under their priors, and integrated over
   /// by Laplace's rule. `near`: parts of a model that is next to this one; they then change to
-  /// first order in what is between the two, as derivatives ask for. Empty: they are fitted from
-  /// the parts as they are.
+  /// first order in what is between the two, as derivatives ask for. Empty, or numbers may be wrong
+  /// (`outlier_share`): they are fitted from the parts as they are.
   [[nodiscard]] Comparison compare(const ModelLight &model,
                                    std::span<const double> near = {}) const;
   /// The light of a model with its parts as they fit best.

@@ -87,8 +87,9 @@ struct SearchModels {
 Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options);
 
 /// Chi-square of the best fixed attitude: what a search for spins asks a body that does not turn,
-/// without the posterior around it, and without the last steps where ten standard deviations in
-/// each measurement say that there is nothing to find. Errors as `search_pose`.
+/// without the posterior around it. Where the best of its places is ten standard deviations off in
+/// each measurement after a dozen steps on few epochs, that is all: their chi-square in proportion,
+/// which is no fit to all epochs. Errors as `search_pose`.
 Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options);
 
 /// `search_pose` around given turnings with their rate free too: the last step of a search for a

@@ -13,7 +13,8 @@ struct SpinRequest {
   /// Coarse light for the first steps (DirectionTable::lighting); empty: the light itself, which
   /// then has no parts.
   PoseLighting coarse = {};
-  /// Coarser still, which tells the turnings of the first grid that are worth `coarse`; empty: all.
+  /// Coarser still, which tells the turnings of the first grid that are worth `coarse`; empty: that
+  /// thins the grid out too.
   PoseLighting coarsest = {};
   /// Quicker light for what comes between, of the same parts; empty: the light itself.
   PoseLighting first = {};

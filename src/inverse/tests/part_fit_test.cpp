@@ -12,9 +12,9 @@ namespace {
 /// One band: a lobe whose light goes with a power of the slopes, and the rest.
 struct Toy {
   std::vector<double> all, lobe, smooth, rough, q, rest, none;
-  Toy() {
+  explicit Toy(double place = 0) {
     for (int k = 0; k < 30; ++k) {
-      const double x = 0.2 * k - 3;
+      const double x = 0.2 * k - 3 - place;
       none.push_back(0);
       lobe.push_back(2 * std::exp(-x * x));
       smooth.push_back(lobe.back() * std::exp(-0.4 * (x * x - 1)));
@@ -65,6 +65,20 @@ TEST(PartFit, FindsWhatALobeIsOff) {
   EXPECT_NEAR(found.off[1], -0.7, 0.1);
 }
 
+TEST(PartFit, FindsWhatALobeIsOffBesideNumbersThatAreWrong) {
+  const Toy toy;
+  ObservedCurve seen = toy.seen(1.4, -0.7);
+  for (const std::size_t k : {4u, 13u, 22u})
+    seen.samples[k].i *= 1.2; // 20 standard deviations
+  CurveErrors errors = no_floor();
+  errors.outlier_share = 0.05;
+  const CurveLikelihood likelihood(seen, errors);
+  const PartLight parts[] = {{toy.lobe, toy.q, toy.none, toy.smooth, toy.rough, 0.1}};
+  const auto found = likelihood.fit_parts({toy.all, toy.q, toy.none, {}, parts});
+  EXPECT_NEAR(found.off[0], 1.4, 0.3);
+  EXPECT_NEAR(found.off[1], -0.7, 0.1);
+}
+
 // A number a thousand standard deviations off: both densities of the mixture are 0 in double
 // precision, and it counts as wrong (its root is one over the factor).
 TEST(PartFit, NumbersFarOutLeaveItFinite) {
@@ -103,6 +117,71 @@ TEST(PartFit, IntegratesOverWhatItDoesNotKnow) {
                 integral(toy, likelihood), 0.1) // Laplace's rule is good to first order
         << amount << " " << slope;
   }
+}
+
+/// What is asked of derivatives: the curve that they are taken on, and its errors.
+struct Derivative {
+  ObservedCurve curve;
+  CurveErrors errors;
+  std::string name;
+};
+
+/// A lobe that is off, beside where it is asked for.
+std::vector<Derivative> derivatives() {
+  std::vector<Derivative> out;
+  const ObservedCurve seen = Toy(0.01).seen(1.4, -0.7);
+  out.push_back({seen, no_floor(), "as it is"});
+  ObservedCurve counted = seen;
+  for (const ObservedSample &s : seen.samples)
+    for (const double side : {1.0, -1.0}) {
+      ObservedCount one;
+      one.epoch = s.epoch;
+      one.by_i = 5000;
+      one.by_q = side * one.by_i;
+      one.sky = 50;
+      one.fixed_variance = 9;
+      one.net = one.by_i * s.i / 3 * (1 + side * s.q);
+      counted.counts.push_back(one);
+    }
+  out.push_back({counted, no_floor(), "counts"});
+  return out;
+}
+
+TEST(PartFit, DerivativesOfNeighboursAreThoseOfWholeFits) {
+  constexpr double h = 2e-3; // of the lobe's place, where it is .7 wide
+  const auto at = [](const CurveLikelihood &likelihood, double place,
+                     std::span<const double> near = {}) {
+    const Toy toy(place);
+    const PartLight parts[] = {{toy.lobe, toy.q, toy.none, toy.smooth, toy.rough, 0.1}};
+    return likelihood.compare({toy.all, toy.q, toy.none, {}, parts}, near);
+  };
+  for (const Derivative &one : derivatives()) {
+    const CurveLikelihood likelihood(one.curve, one.errors);
+    const Comparison here = at(likelihood, 0);
+    ASSERT_EQ(here.off.size(), 2u) << one.name;
+    const Comparison near = at(likelihood, h, here.off);
+    const Comparison before = at(likelihood, -10 * h), after = at(likelihood, 10 * h);
+    double off = 0, all = 0;
+    for (std::size_t k = 0; k < here.residuals.size(); ++k) {
+      const double quick = (near.residuals[k] - here.residuals[k]) / h;
+      const double full = (after.residuals[k] - before.residuals[k]) / (20 * h);
+      off += (quick - full) * (quick - full);
+      all += full * full;
+    }
+    // Second order: half of h over the scale on which derivatives change, .2 and more.
+    EXPECT_LT(std::sqrt(off / all), 0.01) << one.name;
+  }
+}
+
+TEST(PartFit, NumbersThatMayBeWrongAreFittedWhole) {
+  CurveErrors errors = no_floor();
+  errors.outlier_share = 0.05;
+  const Toy toy;
+  const CurveLikelihood likelihood(Toy(0.01).seen(1.4, -0.7), errors);
+  const PartLight parts[] = {{toy.lobe, toy.q, toy.none, toy.smooth, toy.rough, 0.1}};
+  const ModelLight light{toy.all, toy.q, toy.none, {}, parts};
+  const std::vector<double> near{1, -0.5};
+  EXPECT_EQ(likelihood.compare(light, near).residuals, likelihood.compare(light).residuals);
 }
 
 /// A box of six faces, each of a colour of its own, and one lobe: [all, lobe, smoother, rougher,
