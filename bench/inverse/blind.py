@@ -271,6 +271,12 @@ def table_rows(path):
     return [dict(zip(lines[0], line)) for line in lines[1:]]
 
 
+def in_set(path, attitudes):
+    """One of some attitudes that are alike lies in the balls of a set95.ecsv."""
+    balls = [[float(row[k]) for k in ("qw", "qx", "qy", "qz", "radius_deg")] for row in table_rows(path)]
+    return any(apart(q, b[:4]) <= b[4] for q in attitudes for b in balls)
+
+
 def spin_axis(q, rate):
     """A vector of the body among the stars: q v conj(q)."""
     w, x, y, z = q
@@ -317,9 +323,7 @@ def poses(o, work, meshes):
         same = twins(truth, verdict["symmetries"])
         errors = [min(apart(t, m["q"]) for t in same) for m in verdict["modes"]]
         axis = min(axis_apart(t, verdict["modes"][0]["q"]) for t in same)
-        balls = [[float(x) for x in line.split()] for line in (work / "answer/set95.ecsv").read_text().splitlines()
-                 if line and not line.startswith("#") and not line.startswith("q")]
-        inside = any(apart(t, b[:4]) <= b[4] for t in same for b in balls)
+        inside = in_set(work / "answer/set95.ecsv", same)
         phases = [float(r["phase_angle"]) for r in rows]
         results.append((errors[0], min(errors), len(errors), inside, verdict["share_of_so3"], seconds, verdict["verdict"],
                         verdict["chi2"] / max(verdict["dof"], 1), axis))

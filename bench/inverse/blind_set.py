@@ -4,7 +4,7 @@
 `umov reduce`, and asked of `umov invert pose`, `invert spin` and `identify`. The truth stays in this program.
 Prints a line a curve; writes the table, with what made it in its header.
 
-usage: blind_set.py [--counts] [--each 20] [--seed 60] [--kinds pose,spin,identity] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
+usage: blind_set.py [--counts] [--each 20] [--only N] [--seed 60] [--kinds pose,spin,identity] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
                     [options of umov invert and identify]
 --objects: of which poses and spins are asked; identities are of those of the library: cubesat, agena, box-wing, hst, each with its own light.
 --snr: of I, in the median of the lit sets: the telescope is made as large as that takes, its focal ratio kept. Without it: 28 cm.
@@ -103,8 +103,7 @@ def pose(chain, name, rng, seed, keep):
         return "refused", float("nan"), False, False, 1.0, seconds
     same = blind.twins(truth, answer["symmetries"])
     error = min(blind.apart(t, answer["modes"][0]["q"]) for t in same) if answer["modes"] else float("nan")
-    balls = [[float(row[k]) for k in ("qw", "qx", "qy", "qz", "radius_deg")] for row in blind.table_rows(chain.work / "answer/set95.ecsv")]
-    inside = any(blind.apart(t, b[:4]) <= b[4] for t in same for b in balls)
+    inside = blind.in_set(chain.work / "answer/set95.ecsv", same)
     return answer["verdict"], error, error < 5, inside, answer["share_of_so3"], seconds
 
 
@@ -120,6 +119,8 @@ def spin(chain, name, rng, seed, keep, period=40.0):
     true = blind.spin_axis(truth, rate)
     off = []
     for row in blind.table_rows(chain.work / "answer/modes.ecsv"):
+        if off and float(row["weight"]) < 0.01:
+            continue
         w = [float(row[k]) for k in ("rate_x", "rate_y", "rate_z")]
         found = blind.spin_axis([float(row[k]) for k in ("qw", "qx", "qy", "qz")], w)
         turns = math.sqrt(sum(x * x for x in w)) * period / 360
@@ -186,7 +187,8 @@ def main():
         print(f"{kind}, SNR {o.snr:g}: of {done} {right} right, {covered} in the set, {inside} right or in the set", flush=True)
     if o.output:
         version = subprocess.run([str(o.umov), "--version"], capture_output=True, text=True).stdout.strip()
-        head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds} --objects {o.objects} --snr {o.snr:g}{' --counts' if o.counts else ''}; {version}",
+        head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds} --objects {o.objects} --snr {o.snr:g}{' --counts' if o.counts else ''}"
+                f"{'' if o.only is None else f' --only {o.only}'}{''.join(f' {word}' for word in o.rest)}; {version}",
                 "# value: error of the best attitude [deg], of the best axis [deg], probability of the true object",
                 "# share: of all attitudes, that the set takes; objects that 95 % of the probability need",
                 "kind,trial,object,verdict,value,right,in_set,share,seconds"]
