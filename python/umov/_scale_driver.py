@@ -156,7 +156,7 @@ class Driver:
 
     def _submit(self, count: int) -> None:
         indices = [index for _, index in zip(range(count), self.todo)]
-        if not indices:
+        if not indices or self._scheduler_is_gone():
             return
         # No two clients' tasks of one name: what a second one asks for is its own.
         self.submits += 1
@@ -170,14 +170,15 @@ class Driver:
         if self._scheduler_is_gone():
             return
         if future.status == "lost" and not self.stopped:  # a worker was killed with the record in its hands: the shard may be there
-            self.todo = itertools.chain([int(future.key.split("-")[2])], self.todo)
-            self.has_lost = True
+            self._ask_again(future)
             return
         if future.status != "finished":
             why = future.exception() if future.status == "error" else future.status
             self._stop(DeviceError(f"Dask lost a shard ({why})"))
             return
-        record = future.result()
+        record = self._record(future)
+        if record is None:
+            return
         future.release()
         self.known = set()
         self.lost = 0
@@ -197,6 +198,24 @@ class Driver:
             if self.exhausted >= _EXHAUSTED and self.done == 0:
                 self._stop(DeviceError(f"{self.exhausted} attempts ran out of memory one after the other, and no shard was done: "
                                        f"{record['message']}"))
+
+    def _ask_again(self, future: Any) -> None:
+        self.todo = itertools.chain([int(future.key.split("-")[2])], self.todo)
+        self.has_lost = True
+
+    def _record(self, future: Any) -> dict[str, Any] | None:
+        """What the task told, or None where that was cut off on its way: by the end of the scheduler, which its client notices a
+        moment later, or of a worker."""
+        try:
+            record: dict[str, Any] = future.result()
+            return record
+        except OSError:  # CommClosedError
+            for _ in range(20):
+                if self._scheduler_is_gone():
+                    return None
+                time.sleep(0.05)
+            self._ask_again(future)
+            return None
 
     def _tell_failed(self, record: dict[str, Any]) -> None:
         lock, index = self.result.lock, record["index"]
