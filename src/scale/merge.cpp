@@ -128,22 +128,32 @@ void tell(Table &block, const Ahead &ahead) {
     block.set_width(names[c], ahead.widths[c]);
 }
 
+/// The blocks of a table, shard by shard, to `take`; `sink` hears of a stop.
+template <class F>
+Result<void> for_each_block(const JobFolder &folder, const std::vector<Shard> &shards,
+                            std::size_t table, TableSink &sink, const jobs::Monitor &monitor,
+                            F &&take) {
+  for (const Shard &shard : shards) {
+    if (monitor.is_cancelled())
+      return tl::unexpected(sink.stop({ErrorCode::Interrupted, "stopped by the user", {}}));
+    UMOV_ASSIGN(file, open_checked(folder, shard));
+    for (std::size_t b = 0; b < file.blocks(table); ++b) {
+      UMOV_ASSIGN(block, file.block(table, b));
+      UMOV_TRY(take(std::move(block)));
+    }
+    monitor.advance("shards", shard.index + 1, shards.size());
+  }
+  return {};
+}
+
 /// What all shards keep of the rows, put together.
 Result<void> merge_reduced(const JobFolder &folder, std::size_t number, TableSink &sink,
                            const jobs::Monitor &monitor) {
   UMOV_ASSIGN(shards, all_shards(folder));
   UMOV_ASSIGN(ahead, look_ahead(folder, shards, number, monitor));
   UMOV_ASSIGN(all, make_reducer(folder.lock().reductions.at(number)));
-  for (const Shard &shard : shards) {
-    if (monitor.is_cancelled())
-      return tl::unexpected(sink.stop({ErrorCode::Interrupted, "stopped by the user", {}}));
-    UMOV_ASSIGN(file, open_checked(folder, shard));
-    for (std::size_t b = 0; b < file.blocks(number); ++b) {
-      UMOV_ASSIGN(block, file.block(number, b));
-      UMOV_TRY(all->join(block));
-    }
-    monitor.advance("shards", shard.index + 1, shards.size());
-  }
+  UMOV_TRY(for_each_block(folder, shards, number, sink, monitor,
+                          [&all](Table &&block) { return all->join(block); }));
   if (all->rows() == 0 && !folder.lock().nothing.empty())
     return fail(ErrorCode::Nothing, folder.lock().nothing);
   Table table = all->table();
@@ -171,28 +181,22 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
   std::optional<Table> empty; // what stands in place of all where none has a row
   std::size_t rows = 0;
   bool is_first = true;
-  for (const Shard &shard : shards) {
-    if (monitor.is_cancelled())
-      return tl::unexpected(sink.stop({ErrorCode::Interrupted, "stopped by the user", {}}));
-    UMOV_ASSIGN(file, open_checked(folder, shard));
-    for (std::size_t b = 0; b < file.blocks(number); ++b) {
-      UMOV_ASSIGN(block, file.block(number, b));
-      rows += block.rows();
-      if (block.rows() == 0) {
-        if (!empty)
-          empty = std::move(block);
-        continue;
-      }
-      if (is_sorted) {
-        all.append(std::move(block));
-        continue;
-      }
-      if (std::exchange(is_first, false))
-        tell(block, ahead);
-      UMOV_TRY(sink.add(std::move(block)));
-    }
-    monitor.advance("shards", shard.index + 1, shards.size());
-  }
+  UMOV_TRY(
+      for_each_block(folder, shards, number, sink, monitor, [&](Table &&block) -> Result<void> {
+        rows += block.rows();
+        if (block.rows() == 0) {
+          if (!empty)
+            empty = std::move(block);
+          return {};
+        }
+        if (is_sorted) {
+          all.append(std::move(block));
+          return {};
+        }
+        if (std::exchange(is_first, false))
+          tell(block, ahead);
+        return sink.add(std::move(block));
+      }));
   if (rows == 0 && number == 0 && !lock.nothing.empty())
     return fail(ErrorCode::Nothing, lock.nothing);
   if (rows == 0 && !empty)

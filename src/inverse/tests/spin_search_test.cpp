@@ -53,6 +53,16 @@ TEST(DirectionTable, AnOddNumberOfCellsHasNoHalf) {
   EXPECT_EQ(half.error().code, ErrorCode::BadInput);
 }
 
+/// One period, no alias, any axis; a table of `coarse` light for the first looks.
+SpinRequest one_period(double period_s, const PoseLighting &coarse) {
+  SpinRequest out;
+  out.periods_s = {period_s};
+  out.coarse = DirectionTable::lighting(DirectionTable::make(coarse, 24, 0, 0), 0);
+  out.attitudes = 2000;
+  out.axes = 100;
+  return out;
+}
+
 TEST(SpinSearch, PeriodAxisAndAttitudeComeBack) {
   const Box box;
   const auto table = DirectionTable::make(box, 24, 0, 0);
@@ -117,11 +127,7 @@ TEST(SpinSearch, PlacesThatCoarseLightPrefersDoNotCrowdOutTheTruth) {
                       normalized(Vec3<Body>{0.5, 0.7, -0.3}) * (2 * pi / period)};
   ObservedCurve curve = pass(80);
   observe(curve, body, truth, 50, 6);
-  SpinRequest request;
-  request.periods_s = {period * 1.01};
-  request.coarse = DirectionTable::lighting(DirectionTable::make(other_colours, 24, 0, 0), 0);
-  request.attitudes = 2000;
-  request.axes = 100;
+  const SpinRequest request = one_period(period * 1.01, other_colours);
   const auto answer = search_spin(curve, body, {0, 1}, request, small());
   ASSERT_TRUE(answer) << answer.error().text();
   const Turning &best = answer->pose.modes.front().turning;
@@ -145,11 +151,7 @@ TEST(SpinSearch, TurnsInAPauseBetweenPassesAreCounted) {
     curve.epochs.push_back(epoch);
   }
   observe(curve, box, truth, 50, 3);
-  SpinRequest request;
-  request.periods_s = {period * 1.01};
-  request.coarse = DirectionTable::lighting(DirectionTable::make(box, 24, 0, 0), 0);
-  request.attitudes = 2000;
-  request.axes = 100;
+  const SpinRequest request = one_period(period * 1.01, box);
   const auto answer = search_spin(curve, box, {0, 1}, request, small());
   ASSERT_TRUE(answer) << answer.error().text();
   const PoseMode &best = answer->pose.modes.front();

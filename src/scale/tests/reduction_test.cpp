@@ -7,6 +7,7 @@
 #include <ctime>
 #include <gtest/gtest.h>
 #include <limits>
+#include <memory>
 #include <span>
 
 namespace umov::scale {
@@ -34,14 +35,20 @@ template <class T> std::vector<T> cells(const Table &table, const char *name) {
   return std::get<std::vector<T>>(table.find(name)->cells);
 }
 
-/// Of rows that come in one piece, and of two parts whose tables are put together.
-Table kept(const std::string &text, const Table &all, std::size_t cut) {
-  const auto one = make_reducer(text), other = make_reducer(text), both = make_reducer(text);
-  EXPECT_TRUE((*one)->take(all.part(0, cut)));
-  EXPECT_TRUE((*other)->take(all.part(cut, all.rows() - cut)));
+/// What two that had the rows before and behind a cut keep together.
+std::unique_ptr<Reducer> joined(const std::string &text, const Table &all, std::size_t cut,
+                                std::span<const double> order = {}) {
+  const auto one = make_reducer(text), other = make_reducer(text);
+  auto both = make_reducer(text);
+  const std::size_t ordered = std::min(cut, order.size());
+  EXPECT_TRUE((*one)->take(all.part(0, cut), order.first(ordered)));
+  EXPECT_TRUE((*other)->take(all.part(cut, all.rows() - cut), order.subspan(ordered)));
   EXPECT_TRUE((*both)->join((*one)->kept()));
   EXPECT_TRUE((*both)->join((*other)->kept()));
-  return (*both)->table();
+  return std::move(*both);
+}
+Table kept(const std::string &text, const Table &all, std::size_t cut) {
+  return joined(text, all, cut)->table();
 }
 
 TEST(Reductions, CountRowsInBinsOfEachBand) {
@@ -106,15 +113,10 @@ TEST(Reductions, TakeWhatIsTheSameInTheOrderOfTheWholeTable) {
     for (const auto &[text, poses] :
          {std::pair<std::string, std::vector<std::int64_t>>{"most:intensity:1:band", {3, 5, 1}},
           {"least:intensity:2:band", {4, 3, 2, 5, 1, 0}}}) {
-      const auto one = make_reducer(text), other = make_reducer(text), both = make_reducer(text);
-      const std::span order(all.order);
-      ASSERT_TRUE((*one)->take(all.rows.part(0, cut), order.first(cut)));
-      ASSERT_TRUE((*other)->take(all.rows.part(cut, 7 - cut), order.subspan(cut)));
-      ASSERT_TRUE((*both)->join((*one)->kept()));
-      ASSERT_TRUE((*both)->join((*other)->kept()));
-      EXPECT_EQ(cells<std::int64_t>((*both)->table(), "pose"), poses) << text << " cut at " << cut;
-      EXPECT_EQ((*both)->table().columns().size(), 3u);
-      EXPECT_EQ((*both)->rows(), 7u);
+      const auto both = joined(text, all.rows, cut, all.order);
+      EXPECT_EQ(cells<std::int64_t>(both->table(), "pose"), poses) << text << " cut at " << cut;
+      EXPECT_EQ(both->table().columns().size(), 3u);
+      EXPECT_EQ(both->rows(), 7u);
     }
 }
 
@@ -122,13 +124,8 @@ TEST(Reductions, CountGroupsInTheOrderOfTheWholeTable) {
   const Made all = made_by_three();
   const std::string text = "histogram:intensity:0:6:1:band";
   for (std::size_t cut = 0; cut <= 7; ++cut) {
-    const auto one = make_reducer(text), other = make_reducer(text), both = make_reducer(text);
-    const std::span order(all.order);
-    ASSERT_TRUE((*one)->take(all.rows.part(0, cut), order.first(cut)));
-    ASSERT_TRUE((*other)->take(all.rows.part(cut, 7 - cut), order.subspan(cut)));
-    ASSERT_TRUE((*both)->join((*one)->kept()));
-    ASSERT_TRUE((*both)->join((*other)->kept()));
-    const Table table = (*both)->table();
+    const auto both = joined(text, all.rows, cut, all.order);
+    const Table table = both->table();
     EXPECT_EQ(
         cells<std::string>(table, "band"),
         (std::vector<std::string>{"A", "A", "A", "A", "C", "C", "C", "C", "B", "B", "B", "B"}));
