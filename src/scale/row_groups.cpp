@@ -61,8 +61,7 @@ Result<void> Groups::look_at(const Table &rows) {
                               "one of texts or whole numbers was expected",
                               printable(name)));
     if (keys_.size() < by_->size())
-      keys_.push_back(
-          {column->name, column->unit, column->description, none_like(column->cells)});
+      keys_.push_back({column->name, column->unit, column->description, none_like(column->cells)});
     columns_.push_back(&column->cells);
   }
   return {};
@@ -81,9 +80,7 @@ std::size_t Groups::of(std::size_t row, double order) {
   return last_ = group;
 }
 
-std::string Groups::names() const {
-  return printable(fmt::format("{}", fmt::join(*by_, "+")));
-}
+std::string Groups::names() const { return printable(fmt::format("{}", fmt::join(*by_, "+"))); }
 
 std::vector<std::size_t> Groups::in_order() const {
   std::vector<std::size_t> out(count());
