@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """umov and Mitsuba's polarized variant with light between surfaces: poses per second at equal error.
 
-    bench/peers/run bounces [--umov PATH] [--poses N] [--facets N] [--surfaces N] [--accuracy A] [--kind K]
+    bench/peers/run bounces [--umov PATH] [--poses N] [--facets N] [--surfaces N] [--accuracy A] [--kind K] [--many N] [--alpha A]
 
 Both light the same box-wing (separable GGX, four metals, flat normals) by the Sun, up to N surfaces: in random
-geometries, and in a series, as of a body that turns by half a degree from one sample to the next. umov shares paths
-between the poses of a series; Mitsuba treats both alike, so its rate and errors are those of every eighth pose.
+geometries, in many of them (as of a library), and in a series, as of a body that turns by half a degree from one sample to the
+next. umov shares paths between the poses of a series, and chains between many; Mitsuba treats all alike, so its rate and errors
+are those of every eighth pose of a series, and of many the first.
 Errors are each program's own, from two runs with different seeds: |a - b|/(sqrt 2 I), so neither is the other's
 judge; that both compute the same is said by the median difference. Mitsuba's number of paths is chosen for the
-median error of umov, and for its 95th percentile. Times hold everything but the start: umov's whole command less that
-of a run of one pose (which prepares the scene), Mitsuba's kernel after it was compiled.
+median error of umov, and for its 90th and 95th percentile. Times hold everything but the start: umov's whole command less that
+of a run of one pose (which prepares the scene; of many, of a run of the first, which draws the chains), Mitsuba's kernel after it was
+compiled.
 """
 
 import argparse
@@ -24,12 +26,15 @@ from compare import (MATERIALS, WAVELENGTHS, index_values, machine, random_geome
                      umov_stokes, write_geometry, write_scenario)
 
 
+QUANTILES = {"median": 0.5, "90 %": 0.9, "95 %": 0.95}
+
+
 def two_run_errors(a, b):
-    """Median and 95th percentile of the error of I of one run, of poses above 1 % of the median light."""
+    """QUANTILES of the error of I of one run, of poses above 1 % of the median light."""
     mean = (a[:, 0, 0] + b[:, 0, 0]) / 2
     lit = mean > 0.01 * np.median(mean[mean > 0])
     error = np.abs(a[lit, 0, 0] - b[lit, 0, 0]) / mean[lit] / np.sqrt(2)
-    return float(np.median(error)), float(np.quantile(error, 0.95))
+    return [float(np.quantile(error, part)) for part in QUANTILES.values()]
 
 
 def series_geometries(count, step_deg=0.5):
@@ -52,24 +57,32 @@ def series_geometries(count, step_deg=0.5):
 
 def run_umov(options, folder, kind, sun, observer):
     """Stokes of two runs with different seeds, poses per second, and the time to start."""
-    geometry, one = os.path.join(folder, "geometry.csv"), os.path.join(folder, "one.csv")
+    # What is lit to know errors, what the rate is of, and what tells the time before the first pose.
+    geometry, timed, first = (os.path.join(folder, f"{name}.csv") for name in ("geometry", "timed", "first"))
     write_geometry(geometry, sun, observer)
-    write_geometry(one, sun[:1], observer[:1])
-    scenario = write_scenario(folder, 1)
+    write_geometry(first, sun[:1], observer[:1])
+    more, count, before = ["--accuracy", options.accuracy[kind == "series"]], len(sun), 1
+    if kind == "many":
+        more += ["--visibility", "auto", "--set", "render.between=chains"]
+        write_geometry(timed, *random_geometries(options.many, 3))
+        count, before, first = options.many, len(sun), geometry
+    else:
+        more += ["--visibility", "masks"]
+        timed = geometry
+    scenario = write_scenario(folder, 1, options.lobes)
     with open(scenario, "a") as file:
         file.write(f'[render]\nbounces = {options.surfaces}\nsun = "point"\n')
-    more = ["--visibility", "masks", "--accuracy", options.accuracy[kind == "series"]]
-    runs, spent = [], []
-    for seed in (1, 2):
+
+    def run(poses, seed=None):
         begin = time.perf_counter()
-        runs.append(umov_stokes(options.umov, scenario, geometry, folder, *more, "--seed", seed))
-        spent.append(time.perf_counter() - begin)
-    starts = []
-    for _ in range(3):
-        begin = time.perf_counter()
-        umov_stokes(options.umov, scenario, one, folder, *more)
-        starts.append(time.perf_counter() - begin)
-    return runs, len(sun) / (min(spent) - min(starts)), min(starts)
+        found = umov_stokes(options.umov, scenario, poses, folder, *more, *(["--seed", seed] if seed else []))
+        return found, time.perf_counter() - begin
+
+    runs, spent = zip(*(run(geometry, seed) for seed in (1, 2)))
+    if kind == "many":
+        spent = [run(timed)[1]]
+    start = min(run(first)[1] for _ in range(1 if kind == "many" else 3))
+    return runs, (count - before) / (min(spent) - start), start
 
 
 def compare(options, folder, scene, setup, kind):
@@ -90,13 +103,13 @@ def compare(options, folder, scene, setup, kind):
     curve = []
     for k in range(10, 21):
         curve.append((1 << k, two_run_errors(many(1 << k, 1000), many(1 << k, 5000))))
-        print(f"  {1 << k:7} paths: {curve[-1][1][0]:.1e} {curve[-1][1][1]:.1e}", file=sys.stderr)
-        if curve[-1][1][0] < wanted[0] and curve[-1][1][1] < wanted[1]:
+        print(f"  {1 << k:7} paths: {' '.join(f'{one:.1e}' for one in curve[-1][1])}", file=sys.stderr)
+        if all(found < one for found, one in zip(curve[-1][1], wanted)):
             break
     print(f"{kind}:")
-    print(f"umov     {rate:9.1f} poses/s, error of I median {wanted[0]:.1e}, 95 % {wanted[1]:.1e}, "
-          f"start {start:.2f} s")
-    for name, which in (("median", 0), ("95 %", 1)):
+    told = ", ".join(f"{name} {one:.1e}" for name, one in zip(QUANTILES, wanted))
+    print(f"umov     {rate:9.1f} poses/s, error of I {told}; start {start:.2f} s")
+    for which, name in enumerate(QUANTILES):
         samples = rays_for(curve, which, wanted[which])
         is_equal = curve[-1][1][which] <= wanted[which]
         many(samples, 1)
@@ -117,16 +130,19 @@ def main():
     parser.add_argument("--umov", default="build/release/apps/cli/umov")
     parser.add_argument("--facets", type=int, default=10_000)
     parser.add_argument("--poses", type=int, nargs=2, default=[60, 512], help="random ones, and those of the series")
+    parser.add_argument("--many", type=int, default=4000)
     parser.add_argument("--surfaces", type=int, default=5)
     parser.add_argument("--accuracy", type=float, nargs=2, default=[0.005, 0.02], help="of both, as umov is asked")
-    parser.add_argument("--kind", choices=["random", "series", "both"], default="both")
+    parser.add_argument("--kind", choices=["random", "many", "series", "all"], default="all")
+    parser.add_argument("--alpha", type=float, help="of all lobes, instead of their own")
     options = parser.parse_args()
+    options.lobes = {group: (index, options.alpha or alpha) for group, (index, alpha) in MATERIALS.items()}
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         mesh = os.path.join(folder, "box-wing.obj")
         umov(options.umov, "mesh", "make", "box-wing", "--facets", options.facets, "-o", mesh)
         materials = {}
-        for group, (index, alpha) in MATERIALS.items():
+        for group, (index, alpha) in options.lobes.items():
             n, k = index_values(options.umov, index, WAVELENGTHS[1])
             materials[group] = {"alpha": alpha, "n": n, "k": k}
 
@@ -137,8 +153,8 @@ def main():
         setup = time.perf_counter() - begin
         print(f"# {machine()}, {os.cpu_count()} cores, load {load:.2f} at the start; {options.facets} triangles, "
               f"separable GGX, up to {options.surfaces} surfaces, phase angles 15-150 deg")
-        for kind in ("random", "series"):
-            if options.kind in (kind, "both"):
+        for kind in ("random", "many", "series"):
+            if options.kind in (kind, "all"):
                 compare(options, folder, scene, setup, kind)
 
 

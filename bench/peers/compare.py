@@ -54,11 +54,11 @@ def read_groups(path):
     return {name: (vertices, np.array(list_)) for name, list_ in faces.items()}
 
 
-def write_scenario(folder, bands):
+def write_scenario(folder, bands, of=MATERIALS):
     lines = ["umov = 1", "[[object]]", 'name = "box-wing"',
              'mesh = { file = "box-wing.obj", unit = "m", up = "+Z" }', "[object.materials]"]
     lines += [f'{group} = "peer_{group}"' for group in MATERIALS]
-    for group, (index, alpha) in MATERIALS.items():
+    for group, (index, alpha) in of.items():
         lines += [f"[material.peer_{group}]", f'index = "{index}"',
                   f'distribution = {{ model = "ggx", alpha = {alpha} }}', 'shadowing = "separable"']
     names = ", ".join(f'"nm:{w}"' for w in WAVELENGTHS[bands])

@@ -1,5 +1,6 @@
 #include "light/between/bounce_scene.h"
 
+#include "light/between/mirror_parts.h"
 #include "light/reference/elements.h"
 
 #include <algorithm>
@@ -27,7 +28,10 @@ BounceScene::BounceScene(const Scene &scene, const std::vector<VisibleSides> &si
     back_sampler_.emplace_back(scene.back[g]);
   }
   group_triangles();
+  mirrors_ = std::make_unique<const MirrorParts>(*this);
 }
+
+BounceScene::~BounceScene() = default;
 
 void BounceScene::group_triangles() {
   double whole = 0;

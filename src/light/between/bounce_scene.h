@@ -5,6 +5,7 @@
 
 #include "light/between/directions.h"
 
+#include <memory>
 #include <umov/scene/scene.h>
 #include <umov/shape/occluder.h>
 #include <umov/shape/topology.h>
@@ -22,11 +23,14 @@ struct Vertex {
   bool is_front = true;
 };
 
+class MirrorParts;
+
 /// What does not depend on the pose.
 class BounceScene {
 public:
   /// Both must live. `sides` of the scene's mesh.
   BounceScene(const Scene &scene, const std::vector<VisibleSides> &sides);
+  ~BounceScene();
 
   /// The point of a triangle with two barycentric coordinates, lifted off the side faced.
   [[nodiscard]] Vertex vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const;
@@ -38,6 +42,7 @@ public:
   [[nodiscard]] const std::vector<VisibleSides> &sides() const { return sides_; }
   [[nodiscard]] const std::vector<double> &areas() const { return area_m2_; }
   [[nodiscard]] Vec3<Body> normal(std::uint32_t triangle) const { return normal_[triangle]; }
+  [[nodiscard]] const MirrorParts &mirrors() const { return *mirrors_; }
 
 private:
   friend class PathSampler;
@@ -50,6 +55,7 @@ private:
   std::vector<double> area_m2_;
   double size_m_ = 0;
   AreaGroups groups_;
+  std::unique_ptr<const MirrorParts> mirrors_;
   std::vector<Sampler> front_sampler_, back_sampler_; ///< per mesh group
 };
 

@@ -127,8 +127,11 @@ ChainSurfaces::ChainSurfaces(const Scene &scene) {
     }
     is_fast_.push_back(is_fast ? 1 : 0);
   }
+  leaves_any_.assign(surface_.size(), 0);
   for (std::uint32_t a = 0; a < surface_.size(); ++a)
     for (std::uint32_t b = 0; b < surface_.size(); ++b) {
+      if (part(a, b) != ChainPart::Whole)
+        leaves_any_[a] = leaves_any_[b] = 1;
       needs_paths_ = needs_paths_ || part(a, b) != ChainPart::Whole;
       has_any_ = has_any_ || part(a, b) != ChainPart::Nothing;
     }

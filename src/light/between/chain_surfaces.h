@@ -26,6 +26,8 @@ public:
   [[nodiscard]] std::size_t size() const { return surface_.size(); }
   [[nodiscard]] const Surface &surface(std::uint32_t kind) const { return *surface_[kind]; }
   [[nodiscard]] ChainPart part(std::uint32_t a, std::uint32_t b) const;
+  /// Some light that enters or leaves there is left to paths.
+  [[nodiscard]] bool leaves_any(std::uint32_t kind) const { return leaves_any_[kind] != 0; }
   /// What paths have to draw besides.
   [[nodiscard]] bool needs_paths() const { return needs_paths_; }
   /// Some light can be drawn by chains at all.
@@ -41,7 +43,7 @@ private:
   void tabulate_strength(std::size_t bands);
   std::vector<const Surface *> surface_;
   std::unordered_map<const Surface *, std::uint32_t> kind_;
-  std::vector<char> is_fast_;
+  std::vector<char> is_fast_, leaves_any_;
   std::vector<backend::ChainSurface> fast_;
   std::vector<std::vector<double>> strength_;
   bool needs_paths_ = false, has_any_ = false;

@@ -22,6 +22,13 @@ inline Vec3<Body> mirrored(Vec3<Body> direction, Vec3<Body> normal) {
   return normalized(normal * (2 * dot(direction, normal)) - direction);
 }
 
+/// At a cosine from a normal, a part v of a turn about it.
+inline Vec3<Body> about(Vec3<Body> normal, double cosine, double v) {
+  const Vec3<Body> x = any_perpendicular(normal), y = cross(normal, x);
+  const double s = std::sqrt(std::max(0.0, 1 - cosine * cosine)), azimuth = 2 * pi * v;
+  return normal * cosine + x * (s * std::cos(azimuth)) + y * (s * std::sin(azimuth));
+}
+
 /// Normals drawn in proportion to D(h) (n.h) of one of the forms that the facet kernels know.
 struct NormalSampler {
   KernelForm form;
@@ -94,19 +101,9 @@ struct Sampler {
     if (choice < mirror_share)
       return {mirrored(from, normal), mirror_share, true};
     choice = (choice - mirror_share) / (1 - mirror_share);
-    const Vec3<Body> x = any_perpendicular(normal), y = cross(normal, x);
-    const double azimuth = 2 * pi * v;
-    const auto about_normal = [&](double c) {
-      const double s = std::sqrt(std::max(0.0, 1 - c * c));
-      return normal * c + x * (s * std::cos(azimuth)) + y * (s * std::sin(azimuth));
-    };
-    Vec3<Body> to;
-    if (choice < cosine_share) {
-      to = about_normal(std::sqrt(u));
-    } else {
-      const Vec3<Body> h = about_normal(normals.cosine(u));
-      to = mirrored(from, h);
-    }
+    const Vec3<Body> to = choice < cosine_share
+                              ? about(normal, std::sqrt(u), v)
+                              : mirrored(from, about(normal, normals.cosine(u), v));
     return {to, density(normal, from, to)};
   }
 };

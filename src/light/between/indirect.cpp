@@ -100,9 +100,7 @@ public:
 private:
   void draw_pose(std::size_t pose, std::size_t first, std::size_t count, PathLearning &before,
                  SeriesSums &sums) {
-    PathSampler sampler(scene_, occluder_, poses_[pose], options_, emission_);
-    if (chains_ != nullptr)
-      sampler.leave_to(*chains_);
+    PathSampler sampler(scene_, occluder_, poses_[pose], options_, emission_, chains_);
     if (sampler.has_any()) {
       PathLearning known;
       known.add(before, memory);

@@ -15,18 +15,20 @@ using Light = PathSampler::Light;
 /// for the first step of a picture's paths (equal numbers for two steps would tie them together).
 constexpr std::uint32_t observer_stream = 0xB0D,
                         sun_stream = observer_stream + PathSampler::surfaces_max,
+                        image_stream = sun_stream + PathSampler::surfaces_max,
                         picture_stream = 0xB0B;
 
 } // namespace
 
 PathSampler::PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
                          const IntegrationOptions &options, const ThermalEmission *emission,
-                         bool has_ends)
+                         const ChainSurfaces *chains, bool has_ends)
     : of_(of), scene_(of.scene_), occluder_(occluder), pose_(pose), options_(options),
-      bands_(of.scene_.grid.nodes().size()),
+      chains_(chains), bands_(of.scene_.grid.nodes().size()),
       seen_(has_ends ? facing(pose.observer) : AreaChoice({}, of.area_m2_, of.groups_)),
       lit_(has_ends ? facing(pose.sun) : AreaChoice({}, of.area_m2_, of.groups_)),
-      emission_(emission), plane_(plane_normal(pose.observer, pose.sun)) {}
+      emission_(emission), images_(of.mirrors(), pose.sun),
+      plane_(plane_normal(pose.observer, pose.sun)) {}
 
 void PathSampler::add(const std::array<double, dimensions> &x, std::uint64_t stream,
                       std::vector<Light> &sum) {
@@ -42,7 +44,10 @@ AreaChoice PathSampler::facing(Vec3<Body> direction) const {
   std::vector<std::uint32_t> triangles;
   for (std::uint32_t t = 0; t < of_.normal_.size(); ++t) {
     const double cosine = dot(of_.normal_[t], direction);
-    if (cosine > 0 ? of_.sides_[t].front : cosine < 0 && of_.sides_[t].back)
+    const bool is_front = cosine > 0;
+    if ((is_front ? of_.sides_[t].front : cosine < 0 && of_.sides_[t].back) &&
+        (chains_ == nullptr || chains_->leaves_any(chains_->kind_of(
+                                   &surface_of_side(scene_, scene_.mesh.triangles[t], is_front)))))
       triangles.push_back(t);
   }
   return {std::move(triangles), of_.area_m2_, of_.groups_};
@@ -145,12 +150,35 @@ double PathSampler::sun_over_observer(const Vertex *x, const Vec3<Body> *step,
   return out;
 }
 
+double PathSampler::image_over_observer(const Vertex *x, const Vec3<Body> *step, std::size_t count,
+                                        const SunImages::Choice &seen_from) const {
+  if (count < 3 || seen_from.is_empty())
+    return 0;
+  const Vertex &from = x[count - 2];
+  const Vec3<Body> to = step[count - 2];
+  const double by_chance = from.sampler->density(from.normal, -step[count - 3], to);
+  return by_chance > 0
+             ? images_.density(seen_from, of_.mirrors().part_of(x[count - 1]), to) / by_chance
+             : 0; // behind its shading normal, where it scatters nothing
+}
+
+void PathSampler::look_at_images(const Vertex &from, SunImages::Choice &out) const {
+  const bool is_wide = from.surface->has_diffuse() || !MirrorParts::is_narrow(*from.surface);
+  if (images_.is_empty() || !is_wide || from.sampler->is_mirror())
+    out.end.clear();
+  else
+    images_.look_from(from.point, out);
+}
+
+ChainPart PathSampler::part_of_chains(const Vertex &first, const Vertex &last) const {
+  return chains_ == nullptr
+             ? ChainPart::Nothing
+             : chains_->part(chains_->kind_of(first.surface), chains_->kind_of(last.surface));
+}
+
 double PathSampler::add_path(const Vertex *x, const Vec3<Body> *step, std::size_t count,
                              double weight, SunEnd end, std::vector<Light> &sum) const {
-  const ChainPart by_chains =
-      chains_ == nullptr
-          ? ChainPart::Nothing
-          : chains_->part(chains_->kind_of(x[0].surface), chains_->kind_of(x[count - 1].surface));
+  const ChainPart by_chains = part_of_chains(x[0], x[count - 1]);
   if (by_chains == ChainPart::Whole)
     return 0;
   double first = 0;
@@ -187,6 +215,10 @@ double PathSampler::go_on(const Vertex &first, double weight, bool is_alone,
   double found = emission_ != nullptr ? add_emitted(path.data(), step.data(), 0, weight, sum) : 0;
   Vec3<Body> back = pose_.observer;
   for (std::size_t k = 0; k + 1 < std::min(options_.bounces, surfaces_max); ++k) {
+    if (k > 0 && !is_alone && emission_ == nullptr) {
+      look_at_images(path[k], from_here_);
+      found += add_by_image(k, weight, stream, sum);
+    }
     std::array<double, 4> u{x[3], x[4], x[5], 0};
     if (k > 0)
       u = uniform4(options_.seed, observer_stream + static_cast<std::uint32_t>(k), stream);
@@ -204,7 +236,7 @@ double PathSampler::go_on(const Vertex &first, double weight, bool is_alone,
       continue;
     }
     const Vertex &end = path[k + 1];
-    if (!(dot(end.face, pose_.sun) > 0) || !is_free(end.point, pose_.sun))
+    if (!(dot(end.face, pose_.sun) > 0) || !is_asked(first, end) || !is_free(end.point, pose_.sun))
       continue;
     const auto add = [&](double factor, SunEnd what) {
       found += add_path(path.data(), step.data(), k + 2, weight * factor, what, sum);
@@ -220,15 +252,36 @@ double PathSampler::go_on(const Vertex &first, double weight, bool is_alone,
       add(1, SunEnd::Disk);
     if (mirror_share == 1)
       continue;
-    // The same path could have been drawn from the Sun: the balance heuristic (Veach & Guibas
-    // 1995).
-    const double share = 1 / (1 + sun_over_observer(path.data(), step.data(), k + 2));
+    // The same path could have been drawn from the Sun, or led to it: the balance heuristic (Veach
+    // & Guibas 1995).
+    const double share = 1 / (1 + sun_over_observer(path.data(), step.data(), k + 2) +
+                              image_over_observer(path.data(), step.data(), k + 2, from_here_));
     if (mirror_share == 0)
       add(share, SunEnd::Disk);
     else
       add(k > 0 ? share - 1 : share, SunEnd::WithoutMirror); // all of it was in the disk's, above
   }
   return found;
+}
+
+double PathSampler::add_by_image(std::size_t k, double weight, std::uint64_t stream,
+                                 std::vector<Light> &sum) {
+  if (from_here_.is_empty())
+    return 0;
+  const auto u = uniform4(options_.seed, image_stream + static_cast<std::uint32_t>(k), stream);
+  const SunImages::Drawn drawn = images_.draw(from_here_, u[0], u[1], u[2]);
+  double distance = 0;
+  Vertex &end = path_[k + 1];
+  // Met first by something else, the direction is another path's.
+  if (!(drawn.density > 0) || !(dot(path_[k].normal, drawn.to) > 0) ||
+      !next(path_[k], drawn.to, end, distance) || of_.mirrors().part_of(end) != drawn.part ||
+      !(dot(end.face, pose_.sun) > 0) || !is_asked(path_[0], end) || !is_free(end.point, pose_.sun))
+    return 0;
+  step_[k] = drawn.to;
+  const double led = image_over_observer(path_.data(), step_.data(), k + 2, from_here_);
+  const double share = led / (1 + sun_over_observer(path_.data(), step_.data(), k + 2) + led);
+  return add_path(path_.data(), step_.data(), k + 2, weight / drawn.density * share, SunEnd::Disk,
+                  sum);
 }
 
 double PathSampler::from_sun(const Vertex &first, const std::array<double, dimensions> &x,
@@ -262,8 +315,10 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
     const double leaving = dot(end.normal, pose_.observer), received = dot(end.normal, back);
     // In area measure the integrand holds the cosines at both ends of each step.
     weight *= dot(path[at + 1].face, d.to) / d.density / dot(end.face, back);
-    const bool is_seen =
-        dot(end.face, pose_.observer) > 0 && leaving > 0 && is_free(end.point, pose_.observer);
+    if (k == 0)
+      look_at_images(end, from_first_);
+    const bool is_seen = dot(end.face, pose_.observer) > 0 && leaving > 0 && is_asked(end, first) &&
+                         is_free(end.point, pose_.observer);
     if (d.is_by_mirror) { // the flux of the Sun's image: f1 without its cosine; no further surface
       return is_seen && received > 0 ? add_path(&path[at], &step[at], 2,
                                                 leaving * arriving / received /
@@ -273,8 +328,9 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
     }
     if (!is_seen)
       continue;
-    const double observer_over_sun = 1 / sun_over_observer(&path[at], &step[at], k + 2);
-    found += add_path(&path[at], &step[at], k + 2, weight * leaving / (1 + observer_over_sun),
+    const double sun = sun_over_observer(&path[at], &step[at], k + 2),
+                 others = 1 + image_over_observer(&path[at], &step[at], k + 2, from_first_);
+    found += add_path(&path[at], &step[at], k + 2, weight * leaving / (1 + others / sun),
                       first.sampler->mirror_share > 0 ? SunEnd::WithoutMirror : SunEnd::Disk, sum);
   }
   return found;

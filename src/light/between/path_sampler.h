@@ -6,6 +6,7 @@
 #include "light/between/chain_surfaces.h"
 #include "light/between/directions.h"
 #include "light/between/lattice.h"
+#include "light/between/sun_images.h"
 
 #include <array>
 #include <umov/light/integrator.h>
@@ -30,10 +31,11 @@ public:
   static constexpr std::size_t surfaces_max = 64;
 
   /// With `emission` the light is what the surfaces send out by themselves, not the Sun's. Without
-  /// ends it can only `look`.
+  /// ends it can only `look`. With `chains`, which must live, paths carry only what those leave out
+  /// (ChainSurfaces::part).
   PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
               const IntegrationOptions &options, const ThermalEmission *emission = nullptr,
-              bool has_ends = true);
+              const ChainSurfaces *chains = nullptr, bool has_ends = true);
 
   [[nodiscard]] bool has_any() const {
     return !seen_.is_empty() && (emission_ != nullptr || !lit_.is_empty());
@@ -49,8 +51,6 @@ public:
     seen_.start_from(other.seen);
     lit_.start_from(other.lit);
   }
-  /// From now on paths carry only what chains leave out (ChainSurfaces::part).
-  void leave_to(const ChainSurfaces &chains) { chains_ = &chains; }
   [[nodiscard]] PathLearning learnt() const { return {seen_.learnt(), lit_.learnt()}; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
@@ -87,6 +87,20 @@ private:
   /// How much likelier a path without mirrors is drawn from the Sun's side than from this one.
   [[nodiscard]] double sun_over_observer(const Vertex *x, const Vec3<Body> *step,
                                          std::size_t count) const;
+  /// How much likelier its last step is drawn towards an image of the Sun; `seen_from`: what the
+  /// last surface but one sees of them.
+  [[nodiscard]] double image_over_observer(const Vertex *x, const Vec3<Body> *step,
+                                           std::size_t count,
+                                           const SunImages::Choice &seen_from) const;
+  /// The images that a path may be led to from a surface: none from narrow ones.
+  void look_at_images(const Vertex &from, SunImages::Choice &out) const;
+  /// The path from path_[0] to path_[k] and on to an image of the Sun.
+  double add_by_image(std::size_t k, double weight, std::uint64_t stream, std::vector<Light> &sum);
+  /// Nobody else draws the light that enters at `last` and leaves at `first`.
+  [[nodiscard]] bool is_asked(const Vertex &first, const Vertex &last) const {
+    return part_of_chains(first, last) != ChainPart::Whole;
+  }
+  [[nodiscard]] ChainPart part_of_chains(const Vertex &first, const Vertex &last) const;
   /// Adds a path to all bands; what it adds to I of the first.
   double add_path(const Vertex *x, const Vec3<Body> *step, std::size_t count, double weight,
                   SunEnd end, std::vector<Light> &sum) const;
@@ -107,10 +121,13 @@ private:
   const Occluder &occluder_;
   const Pose &pose_;
   const IntegrationOptions &options_;
+  const ChainSurfaces *chains_;
   std::size_t bands_;
   AreaChoice seen_, lit_;
   const ThermalEmission *emission_;
-  const ChainSurfaces *chains_ = nullptr;
+  SunImages images_;
+  SunImages::Choice from_here_,
+      from_first_;   ///< images seen by the last surface but one, from either end
   Vec3<Body> plane_; ///< normal of the pose's scattering plane
   std::uint64_t rays_ = 0;
   // The path at hand. Room for it on the stack would be set to zero for each: a seventh of the

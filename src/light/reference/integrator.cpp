@@ -192,9 +192,12 @@ std::vector<IndirectLight> by_chains(const ChainStore &store, const PathGround &
     found.light[few[k]] = std::move(alone[k]);
   if (!store.surfaces().needs_paths() || enough.empty())
     return is_stopped(cancel) ? std::vector<IndirectLight>{} : std::move(found.light);
+  // Paths need not know their part better than chains know theirs.
   std::vector<double> beside(direct_i.begin(), direct_i.end());
-  for (std::size_t k = 0; k < beside.size(); ++k)
-    beside[k] += found.light[k / bands].bands[k % bands].stokes.i;
+  for (std::size_t k = 0; k < beside.size(); ++k) {
+    const BandResult &known = found.light[k / bands].bands[k % bands];
+    beside[k] = std::max(beside[k] + known.stokes.i, known.half_width.i / options.accuracy);
+  }
   const auto more = draw(enough, beside, &store.surfaces());
   for (std::size_t k = 0; k < more.size(); ++k) {
     IndirectLight &to = found.light[enough[k]];
@@ -244,7 +247,7 @@ Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> po
   if (state_->is_convex || options.bounces < 2 || points.empty())
     return out;
   const PathGround ground = state_->paths(cancel);
-  PathSampler sampler(ground.scene, ground.occluder, pose, options, nullptr, false);
+  PathSampler sampler(ground.scene, ground.occluder, pose, options, nullptr, nullptr, false);
   std::vector<Stokes<ScatteringPlane>> sum(bands);
   for (std::size_t k = 0; k < points.size() && !is_stopped(cancel); ++k) {
     std::fill(sum.begin(), sum.end(), Stokes<ScatteringPlane>{});
