@@ -55,7 +55,8 @@ void add_signature_options(CLI::App &verb, SignatureOptions &o, Common &common) 
           "--accuracy", o.accuracy,
           "Relative 95 % half-width asked of I. Default: the scenario's render.accuracy; "
           "where it has none, 0.04 of I, or of 0.02 of the typical light where that is more "
-          "(most rows are known ten times better), and 0.005 with rays")
+          "(most rows are known ten times better), and 0.005 with rays, or with "
+          "light between surfaces")
       ->check(CLI::Range(1e-6, 1.0));
   verb.add_option("--visibility", o.visibility,
                   "rays: each pose to the accuracy asked; masks: looked up between directions "

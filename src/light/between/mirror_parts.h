@@ -10,11 +10,11 @@ namespace umov {
 
 /// One side of neighbours of one material, in a rectangle.
 struct MirrorPart {
-  Vec3<Body> normal{};           ///< mean of its shading normals, out of this side
-  Vec3<Body> along{}, across{};  ///< of the rectangle, in its plane
-  Vec3<Body> centre{};           ///< [m]
+  Vec3<Body> normal{};          ///< mean of its shading normals, out of this side
+  Vec3<Body> along{}, across{}; ///< of the rectangle, in its plane
+  Vec3<Body> centre{};          ///< [m]
   double half_along_m = 0, half_across_m = 0;
-  double width = 0;              ///< rms slope of the lobe and of the bend of normals
+  double width = 0; ///< rms slope of the lobe and of the bend of normals
   NormalSampler normals{{LobeKind::BlinnPhong, 0}}; ///< about `normal`, as wide as both
 };
 

@@ -39,16 +39,15 @@ struct LampInTwoMirrors {
   [[nodiscard]] Mesh mesh() const {
     const Mesh both = joined(plate(lamp_side, lamp, lamp_normal, "lamp"),
                              plate(4, window, window_normal, "window"));
-    const Mesh more = joined(sheet(-4, -2, -1, 1, floor_z, "floor"), sheet(-1.2, 1, -1.1, 1.1, 3.5, "roof"));
+    const Mesh more =
+        joined(sheet(-4, -2, -1, 1, floor_z, "floor"), sheet(-1.2, 1, -1.1, 1.1, 3.5, "roof"));
     return joined(both, more);
   }
   [[nodiscard]] Scene of_sides() const {
     const Material black = interface_of("paper_spectralon", 10); // n = 1: all light is gone
     return scene_of_sides(mesh(), {gold, gold, grey(rho), black}, {black, black, black, black});
   }
-  [[nodiscard]] Integrator scene() const {
-    return Integrator(of_sides());
-  }
+  [[nodiscard]] Integrator scene() const { return Integrator(of_sides()); }
   /// Light of three surfaces: the floor's patch of radiance rho/pi R_lamp, as the window shows it.
   [[nodiscard]] double intensity() const {
     const std::complex<double> eta = index_at(gold.index, Wavelength::nm(550)).value();
@@ -74,8 +73,7 @@ double of_three_surfaces(const LampInTwoMirrors &lamp, const Pose &pose, double 
 TEST(SunImages, AFloorLitByOneMirrorAndSeenInAnother) {
   const LampInTwoMirrors lamp;
   double half_width = 0;
-  const double found =
-      of_three_surfaces(lamp, {lamp.sun, lamp.observer, 0}, half_width);
+  const double found = of_three_surfaces(lamp, {lamp.sun, lamp.observer, 0}, half_width);
   // Lobes of m = 20,000 stray by .014 rad: the patch's radiance is even, its edge is not; .5 %.
   EXPECT_NEAR(found, lamp.intensity(), half_width + 5e-3 * lamp.intensity());
   // Where paths met the lamp by chance it was 28 %, and 270 % from the other end.
@@ -85,8 +83,7 @@ TEST(SunImages, AFloorLitByOneMirrorAndSeenInAnother) {
 TEST(SunImages, TheSameSeenFromTheSunsPlace) {
   const LampInTwoMirrors lamp;
   double half_width = 0;
-  const double found =
-      of_three_surfaces(lamp, {lamp.observer, lamp.sun, 0}, half_width);
+  const double found = of_three_surfaces(lamp, {lamp.observer, lamp.sun, 0}, half_width);
   EXPECT_NEAR(found, lamp.intensity(), half_width + 5e-3 * lamp.intensity());
   EXPECT_LT(half_width, 0.06 * lamp.intensity());
 }
