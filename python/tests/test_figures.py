@@ -41,7 +41,7 @@ def test_gaps_begin_lines_and_bands_are_chosen():
     both = {"mjd_utc": np.tile(MINE["mjd_utc"], 2), "mag": np.concatenate([MINE["mag"], 5 + 0 * T + 0.1 * np.sin(2 * np.pi * T / 20)]),
             "band": ["V"] * len(T) + ["R"] * len(T)}
     assert _best(both, band="R") == _best(both, band=0) == pytest.approx(20, abs=0.01 * 20**2 / 120)
-    for band, told in ((7, "no band 7; there are R, V"), ("B", "it has R, V")):
+    for band, told in ((7, "no band 7; there are R, V"), ("B", "it has R, V"), ("", 'band is ""')):
         with pytest.raises(umov.Error, match=told):
             plot.folded(both, 20, band=band)
 

@@ -221,6 +221,20 @@ class ForeignArray(np.ndarray):
         return np.asarray(self)
 
 
+class Labelled(np.ndarray):
+    """As xarray's: the unit is a word among others, as it stood in a netCDF file."""
+
+    attrs = {"units": "mm", "long_name": "step"}
+
+
+def test_units_among_attributes_do_not_get_lost_in_silence():
+    with pytest.raises(umov.UsageError, match=r"phase_deg has attrs\[\"units\"\] = 'mm', which is not read"):
+        _numbers.number_array(np.ones(3).view(Labelled), "phase_deg")
+    plain = np.ones(3).view(Labelled)
+    plain.attrs = {"long_name": "step"}
+    assert _numbers.number_array(plain, "phase_deg").tolist() == [1, 1, 1]
+
+
 @pytest.mark.parametrize("foreign", (Foreign(3.0), [Foreign(3.0), Foreign(4.0)], np.ones(()).view(ForeignArray), np.ones(3).view(ForeignArray)))
 def test_quantities_of_others_do_not_lose_their_unit_in_silence(foreign):
     with pytest.raises(umov.UsageError, match="whose unit is not read"):

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -93,6 +94,10 @@ def no_foreign(value: Any, name: str) -> None:
             raise UsageError(f"{name} is {_short(value)}, a {kind.__name__} of {kind.__module__.partition('.')[0]}, whose unit is not read; a Quantity "
                              "of astropy or a plain number was expected: value.to_astropy() of unyt, value.magnitude * "
                              "astropy.units.Unit(str(value.units)) of pint")
+        told = getattr(one, "attrs", None)
+        if isinstance(told, Mapping) and told.get("units") not in (None, "", "1"):  # what xarray takes from a netCDF file
+            raise UsageError(f"{name} has attrs[\"units\"] = {told['units']!r}, which is not read; a Quantity of astropy or a plain number "
+                             "was expected: value.values * astropy.units.Unit(value.attrs[\"units\"])")
 
 
 def lengths(value: Any, name: str) -> Any:

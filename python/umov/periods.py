@@ -84,6 +84,8 @@ def brightness(light: Any, band: str | int, gap_s: float) -> Table:
         raise UsageError(f"gap_s is {gap_s!r}; 1 s or more was expected")
     text, path = _text_of(light, "curve")
     name = band
+    if name == "":
+        raise UsageError('band is ""; the name of one or its number was expected')
     if not isinstance(name, str):
         names = sorted(set(_umov.brightness(text, path, "", gap, None).column("band")))
         if not 0 <= whole(band, "band") < max(len(names), 1):
