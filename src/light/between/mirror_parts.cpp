@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace umov {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr double narrow = 0.07;
 /// Cosine between normals of one part, at least: half the step of a tube of 48 sides.
 constexpr double alike = 0.995;
+/// A path looks at all of them: of more, the largest.
 constexpr std::size_t most = 1024;
 
 /// As long-tailed as the surface's own, or Beckmann's.
@@ -28,6 +30,26 @@ std::size_t end_of_part(const BounceScene &scene, std::size_t begin) {
          all[end].back == all[begin].back && dot(normal(end), normal(begin)) >= alike)
     ++end;
   return end;
+}
+
+/// Triangles in turn, one side of them.
+struct Run {
+  std::size_t begin, end;
+  double area_m2;
+  bool is_front;
+};
+
+double area_of(const BounceScene &scene, std::size_t begin, std::size_t end) {
+  return std::accumulate(scene.areas().begin() + static_cast<std::ptrdiff_t>(begin),
+                         scene.areas().begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+}
+
+/// Some of it, which has an area.
+bool is_seen(const BounceScene &scene, std::size_t begin, std::size_t end, bool is_front) {
+  for (std::size_t t = begin; t < end; ++t)
+    if (scene.areas()[begin] > 0 && (is_front ? scene.sides()[t].front : scene.sides()[t].back))
+      return true;
+  return false;
 }
 
 /// The rectangle in the plane of a normal, along the longest edge, that holds triangles.
@@ -75,7 +97,7 @@ double bend_of(const BounceScene &scene, std::size_t begin, std::size_t end, dou
       const Vec3<Body> flat = side * scene.normal(static_cast<std::uint32_t>(t));
       const bool is_smooth = scene.scene().normals == NormalMode::Smooth && n != no_index;
       const Vec3<Body> bent = is_smooth ? mesh.normals[n] : flat;
-      normals.push_back(dot(bent, flat) < 0 ? -bent : bent);
+      normals.push_back(normalized(dot(bent, flat) < 0 ? -bent : bent));
       mean += normals.back();
     }
   mean = normalized(mean);
@@ -95,26 +117,34 @@ bool MirrorParts::is_narrow(const Surface &surface) {
 MirrorParts::MirrorParts(const BounceScene &scene) {
   const Mesh &mesh = scene.scene().mesh;
   of_.assign(2 * mesh.triangles.size(), none);
+  std::vector<Run> runs;
   for (std::size_t begin = 0, end = 0; begin < mesh.triangles.size(); begin = end) {
     end = end_of_part(scene, begin);
-    const Vec3<Body> plane = scene.normal(static_cast<std::uint32_t>(begin));
-    const VisibleSides &sides = scene.sides()[begin];
-    for (const bool is_front : {true, false}) {
-      const Surface &surface = surface_of_side(scene.scene(), mesh.triangles[begin], is_front);
-      if (!(norm(plane) > 0) || !(is_front ? sides.front : sides.back) || !is_narrow(surface))
-        continue;
-      MirrorPart part;
-      fit_rectangle(mesh, begin, end, plane, part);
-      const double bend = bend_of(scene, begin, end, is_front ? 1 : -1, part.normal);
-      part.width = std::sqrt(surface.width() * surface.width() + bend);
-      part.normals = widened(*surface.normals(0), part.width);
-      for (std::size_t t = begin; t < end; ++t)
-        of_[2 * t + (is_front ? 0 : 1)] = static_cast<std::uint32_t>(parts_.size());
-      parts_.push_back(part);
-    }
+    for (const bool is_front : {true, false})
+      if (is_seen(scene, begin, end, is_front) &&
+          is_narrow(surface_of_side(scene.scene(), mesh.triangles[begin], is_front)))
+        runs.push_back({begin, end, area_of(scene, begin, end), is_front});
   }
-  if (parts_.size() > most)
-    parts_.clear();
+  if (runs.size() > most) {
+    std::stable_sort(runs.begin(), runs.end(),
+                     [](const Run &a, const Run &b) { return a.area_m2 > b.area_m2; });
+    runs.resize(most);
+  }
+  for (const Run &run : runs)
+    add(scene, run.begin, run.end, run.is_front);
+}
+
+void MirrorParts::add(const BounceScene &scene, std::size_t begin, std::size_t end, bool is_front) {
+  const Mesh &mesh = scene.scene().mesh;
+  const Surface &surface = surface_of_side(scene.scene(), mesh.triangles[begin], is_front);
+  MirrorPart part;
+  fit_rectangle(mesh, begin, end, scene.normal(static_cast<std::uint32_t>(begin)), part);
+  const double bend = bend_of(scene, begin, end, is_front ? 1 : -1, part.normal);
+  part.width = std::sqrt(surface.width() * surface.width() + bend);
+  part.normals = widened(*surface.normals(0), part.width);
+  for (std::size_t t = begin; t < end; ++t)
+    of_[2 * t + (is_front ? 0 : 1)] = static_cast<std::uint32_t>(parts_.size());
+  parts_.push_back(part);
 }
 
 } // namespace umov

@@ -18,7 +18,7 @@ struct MirrorPart {
   NormalSampler normals{{LobeKind::BlinnPhong, 0}}; ///< about `normal`, as wide as both
 };
 
-/// All of them; none where there are so many that a look at each would cost more than it finds.
+/// Those of a scene: runs of triangles as the mesh lists them. What is none is met by chance alone.
 class MirrorParts {
 public:
   static constexpr std::uint32_t none = no_index;
@@ -34,6 +34,8 @@ public:
   }
 
 private:
+  void add(const BounceScene &scene, std::size_t begin, std::size_t end, bool is_front);
+
   std::vector<MirrorPart> parts_;
   std::vector<std::uint32_t> of_; ///< per triangle and side
 };

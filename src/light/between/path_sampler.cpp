@@ -27,7 +27,9 @@ PathSampler::PathSampler(const BounceScene &of, const Occluder &occluder, const 
       chains_(chains), bands_(of.scene_.grid.nodes().size()),
       seen_(has_ends ? facing(pose.observer) : AreaChoice({}, of.area_m2_, of.groups_)),
       lit_(has_ends ? facing(pose.sun) : AreaChoice({}, of.area_m2_, of.groups_)),
-      emission_(emission), images_(of.mirrors(), pose.sun),
+      emission_(emission),
+      images_(has_ends && emission == nullptr && options.bounces > 2 ? &of.mirrors() : nullptr,
+              pose.sun),
       plane_(plane_normal(pose.observer, pose.sun)) {}
 
 void PathSampler::add(const std::array<double, dimensions> &x, std::uint64_t stream,
@@ -315,7 +317,7 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
     const double leaving = dot(end.normal, pose_.observer), received = dot(end.normal, back);
     // In area measure the integrand holds the cosines at both ends of each step.
     weight *= dot(path[at + 1].face, d.to) / d.density / dot(end.face, back);
-    if (k == 0)
+    if (k == 0 && !d.is_by_mirror)
       look_at_images(end, from_first_);
     const bool is_seen = dot(end.face, pose_.observer) > 0 && leaving > 0 && is_asked(end, first) &&
                          is_free(end.point, pose_.observer);

@@ -9,6 +9,9 @@ namespace {
 /// Widths of the reflected lobe, twice those of its normals, that are looked for beside a part:
 /// what lies further out is left to the other ways of drawing paths.
 constexpr double looked_beside = 2 * 1.5;
+/// A part nearer than this, in parts of its size, is the one that the point lies on, or in its
+/// plane.
+constexpr double nearest = 1e-3;
 
 void put(std::vector<float> (&to)[3], Vec3<Body> v) {
   to[0].push_back(static_cast<float>(v.x));
@@ -19,10 +22,11 @@ void put(std::vector<float> &to, double x) { to.push_back(static_cast<float>(x))
 
 } // namespace
 
-SunImages::SunImages(const MirrorParts &parts, Vec3<Body> sun)
-    : parts_(parts), sun_(sun), image_(parts.parts().size(), MirrorParts::none) {
-  for (std::uint32_t k = 0; k < parts.parts().size(); ++k) {
-    const MirrorPart &part = parts.parts()[k];
+SunImages::SunImages(const MirrorParts *parts, Vec3<Body> sun)
+    : parts_(parts != nullptr ? std::span(parts->parts()) : std::span<const MirrorPart>{}),
+      sun_(sun), image_(parts_.size(), MirrorParts::none) {
+  for (std::uint32_t k = 0; k < parts_.size(); ++k) {
+    const MirrorPart &part = parts_[k];
     const Vec3<Body> plane = cross(part.along, part.across) *
                              (dot(cross(part.along, part.across), part.normal) < 0 ? -1.0 : 1.0);
     const Vec3<Body> to = -mirrored(sun, part.normal);
@@ -43,6 +47,7 @@ SunImages::SunImages(const MirrorParts &parts, Vec3<Body> sun)
     put(lanes_.half_along, part.half_along_m);
     put(lanes_.half_across, part.half_across_m);
     put(lanes_.spread, looked_beside * part.width);
+    put(lanes_.least_way, nearest * std::max(part.half_along_m, part.half_across_m));
   }
 }
 
@@ -61,7 +66,8 @@ void SunImages::look_from(Vec3<Body> point, Choice &out) const {
     const float a = on(l.along, k) + way * l.along_step[k] - l.along_centre[k],
                 b = on(l.across, k) + way * l.across_step[k] - l.across_centre[k];
     const float reach_a = l.half_along[k] + beside, reach_b = l.half_across[k] + beside;
-    const bool is_near = (way > 0) & (a * a < reach_a * reach_a) & (b * b < reach_b * reach_b);
+    const bool is_near =
+        (way > l.least_way[k]) & (a * a < reach_a * reach_a) & (b * b < reach_b * reach_b);
     // The share of the lobe that the part can catch.
     out.end[k] = is_near ? l.half_along[k] * l.half_across[k] / (reach_a * reach_b) : 0;
   }
@@ -84,7 +90,7 @@ double SunImages::density(const Choice &choice, std::uint32_t part, Vec3<Body> t
   if (k == MirrorParts::none || choice.is_empty())
     return 0;
   const float chance = choice.end[k] - (k > 0 ? choice.end[k - 1] : 0);
-  return static_cast<double>(chance / choice.end.back()) * lobe(parts_.parts()[part], to);
+  return static_cast<double>(chance / choice.end.back()) * lobe(parts_[part], to);
 }
 
 SunImages::Drawn SunImages::draw(const Choice &choice, double x, double u, double v) const {
@@ -94,7 +100,7 @@ SunImages::Drawn SunImages::draw(const Choice &choice, double x, double u, doubl
   const auto found = std::upper_bound(choice.end.begin(), choice.end.end() - 1, wanted);
   Drawn out;
   out.part = part_[static_cast<std::size_t>(found - choice.end.begin())];
-  const MirrorPart &part = parts_.parts()[out.part];
+  const MirrorPart &part = parts_[out.part];
   const Vec3<Body> h = about(part.normal, part.normals.cosine(u), v);
   out.to = -mirrored(sun_, h);
   out.density = density(choice, out.part, out.to);

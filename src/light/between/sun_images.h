@@ -4,6 +4,8 @@
 
 #include "light/between/mirror_parts.h"
 
+#include <span>
+
 namespace umov {
 
 /// The images of one Sun, and how likely each is taken from a point.
@@ -20,8 +22,8 @@ public:
     double density = 0; ///< [1/sr] of this part and direction; 0: none
   };
 
-  /// `parts` must live.
-  SunImages(const MirrorParts &parts, Vec3<Body> sun);
+  /// `parts` must live; null: there are no images.
+  SunImages(const MirrorParts *parts, Vec3<Body> sun);
 
   [[nodiscard]] bool is_empty() const { return part_.empty(); }
   void look_from(Vec3<Body> point, Choice &out) const;
@@ -41,9 +43,10 @@ private:
     std::vector<float> along_step, across_step; ///< of the image's direction
     std::vector<float> along_centre, across_centre, half_along, half_across;
     std::vector<float> spread; ///< beside the part, per length of the way [rad]
+    std::vector<float> least_way;
   };
 
-  const MirrorParts &parts_;
+  std::span<const MirrorPart> parts_;
   Vec3<Body> sun_;
   std::vector<std::uint32_t> part_, image_; ///< of each image its part, and the reverse
   Lanes lanes_;

@@ -4,6 +4,7 @@
 #include "light/tests/integrator_cases.h"
 
 #include <complex>
+#include <map>
 
 namespace umov {
 namespace {
@@ -57,11 +58,12 @@ struct LampInTwoMirrors {
   }
 };
 
-double of_three_surfaces(const LampInTwoMirrors &lamp, const Pose &pose, double &half_width) {
+double of_three_surfaces(const LampInTwoMirrors &lamp, const Pose &pose, double &half_width,
+                         std::size_t most = 1u << 18) {
   const Integrator scene = lamp.scene();
   IntegrationOptions options;
   options.accuracy = 1e-3;
-  options.max_points = 1u << 18;
+  options.max_points = most;
   options.bounces = 3;
   const PoseResult three = scene.evaluate(pose, options);
   options.bounces = 2;
@@ -88,45 +90,91 @@ TEST(SunImages, TheSameSeenFromTheSunsPlace) {
   EXPECT_LT(half_width, 0.06 * lamp.intensity());
 }
 
+TEST(SunImages, LobesOfMiddlingWidthAreTheSameFromBothEnds) {
+  // m = 800: each of the three ways meets the lamp. Chances that do not add up to one would count
+  // some light twice, and not the same from the other end. (Reciprocity, Helmholtz 1867.)
+  LampInTwoMirrors lamp;
+  lamp.gold = interface_of("paper_au", 800);
+  double there = 0, back = 0;
+  const double a = of_three_surfaces(lamp, {lamp.sun, lamp.observer, 0}, there, 1u << 20),
+               b = of_three_surfaces(lamp, {lamp.observer, lamp.sun, 0}, back, 1u << 20);
+  EXPECT_NEAR(a, b, std::hypot(there, back));
+  EXPECT_LT(std::hypot(there, back), 0.06 * a);
+}
+
+/// A body of one material and its images of the Sun.
+struct Images {
+  Scene scene;
+  std::vector<VisibleSides> sides{scene.mesh.triangles.size(), VisibleSides{true, true}};
+  BounceScene between{scene, sides};
+  SunImages of_sun;
+  Images(const Mesh &mesh, const Material &material, Vec3<Body> sun)
+      : scene(scene_of(mesh, NormalMode::Flat, {material})), of_sun(&between.mirrors(), sun) {}
+};
+
 TEST(SunImages, DirectionsAreDrawnAsOftenAsTheirDensitySays) {
-  // The mean of 1/density over what is drawn into a cone is the cone's solid angle.
+  // The mean of 1/density over what is drawn into a cone is the cone's solid angle, once for each
+  // image that the point sees: two lamps of unlike size side by side, from below their seam.
   const LampInTwoMirrors lamp;
-  const Scene scene = lamp.of_sides();
-  const std::vector<VisibleSides> sides(scene.mesh.triangles.size(), VisibleSides{true, true});
-  const BounceScene between(scene, sides);
-  const SunImages images(between.mirrors(), lamp.sun);
+  const Vec3<Body> aside = normalized(cross(lamp.lamp_normal, {0, 1, 0}));
+  const Mesh small = plate(0.5, lamp.lamp + 0.75 * Vec3<Body>{0, 1, 0}, lamp.lamp_normal, "small");
+  const Mesh far = plate(1, lamp.lamp + 9 * aside, lamp.lamp_normal, "far");
+  const Mesh large = plate(1, lamp.lamp, lamp.lamp_normal, "large");
+  const Images images(joined(joined(large, small), far), lamp.gold, lamp.sun);
   SunImages::Choice from;
-  images.look_from({-3.1, 0.2, 1e-6}, from);
-  ASSERT_FALSE(from.is_empty());
+  images.of_sun.look_from({-3, 0.5, 1}, from);
   const Vec3<Body> middle = -lamp.down;
-  constexpr std::size_t draws = 200'000;
+  constexpr std::size_t draws = 400'000;
   const double cone = 0.01;
+  std::map<std::uint32_t, std::size_t> drawn_of;
   double sum = 0, squares = 0;
   for (std::size_t i = 0; i < draws; ++i) {
     const auto u = uniform4(3, 7, i);
-    const SunImages::Drawn drawn = images.draw(from, u[0], u[1], u[2]);
+    const SunImages::Drawn drawn = images.of_sun.draw(from, u[0], u[1], u[2]);
+    ASSERT_GT(drawn.density, 0);
+    ++drawn_of[drawn.part];
+    EXPECT_NEAR(drawn.density, images.of_sun.density(from, drawn.part, drawn.to),
+                1e-12 * drawn.density);
     if (!(angle_between(drawn.to, middle) < cone))
       continue;
-    EXPECT_NEAR(drawn.density, images.density(from, drawn.part, drawn.to), 1e-12 * drawn.density);
     sum += 1 / drawn.density;
     squares += 1 / (drawn.density * drawn.density);
   }
+  EXPECT_EQ(drawn_of.size(), 2u);
+  for (const auto &[part, count] : drawn_of)
+    EXPECT_GT(count, draws / 10) << part;
   const double mean = sum / draws, sd = std::sqrt(squares / draws - mean * mean) / std::sqrt(draws);
-  EXPECT_NEAR(mean, 2 * pi * (1 - std::cos(cone)), 4 * sd);
+  EXPECT_NEAR(mean, 2 * 2 * pi * (1 - std::cos(cone)), 4 * sd);
   EXPECT_LT(sd, 0.01 * mean);
 }
 
 TEST(SunImages, WhatAPointCannotSeeInThemIsLeftOut) {
   const LampInTwoMirrors lamp;
-  const Scene scene = lamp.of_sides();
-  const std::vector<VisibleSides> sides(scene.mesh.triangles.size(), VisibleSides{true, true});
-  const BounceScene between(scene, sides);
-  const SunImages images(between.mirrors(), lamp.sun);
+  const Images images(plate(1, lamp.lamp, lamp.lamp_normal, "lamp"), lamp.gold, lamp.sun);
   SunImages::Choice from;
-  images.look_from({-3, 0, 5}, from); // above the lamp
+  images.of_sun.look_from({-3, 0, 1}, from);
+  EXPECT_FALSE(from.is_empty());
+  images.of_sun.look_from({-3, 0, 5}, from); // above the lamp
   EXPECT_TRUE(from.is_empty());
-  images.look_from({-1, 0, 1e-6}, from); // beside its beam
+  images.of_sun.look_from({-1, 0, 1}, from); // beside its beam
   EXPECT_TRUE(from.is_empty());
+  images.of_sun.look_from(lamp.lamp + 1e-4 * lamp.lamp_normal, from); // on it
+  EXPECT_TRUE(from.is_empty());
+}
+
+TEST(SunImages, OfManyPartsTheLargestAreKept) {
+  Mesh mesh = sheet(0, 10, 0, 10, 0, "large");
+  for (int k = 0; k < 1500; ++k) { // one above the other, none alike to the one before
+    const double turn = k % 2 == 0 ? 0.2 : -0.2;
+    mesh = joined(mesh, moved(sheet(-0.1, 0.1, -0.1, 0.1, 0, "small"), [&](Vec3<Body> p) {
+                    return Vec3<Body>{p.x, p.y, turn * p.x + 1 + k};
+                  }));
+  }
+  const Images images(mesh, interface_of("paper_au", 20'000), {0, 0, 1});
+  EXPECT_EQ(images.between.mirrors().parts().size(), 1024u);
+  Vertex on_large;
+  on_large.triangle = 0;
+  EXPECT_NE(images.between.mirrors().part_of(on_large), MirrorParts::none);
 }
 
 } // namespace
