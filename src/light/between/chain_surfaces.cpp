@@ -16,6 +16,9 @@ namespace {
 /// Product of the widths (rms slopes) of two lobes below which chains, that have to meet both by
 /// chance, are too few: GGX of alpha 0.1 twice.
 constexpr double least_widths = 0.0049;
+/// A lobe narrower than this (GGX of alpha 0.07) is met by too few chains whatever stands at the
+/// other end, and a pose that has many others would not notice; a path begun on it meets it always.
+constexpr double least_width = 0.05;
 /// What a polynomial may miss, in parts of the largest value.
 constexpr double fit_error = 5e-4;
 constexpr std::size_t cosines = 32;
@@ -88,6 +91,10 @@ bool fit_products(const Surface &surface, std::size_t band, backend::ChainSurfac
   return true;
 }
 
+bool has_lobe(const Surface &surface, std::size_t band) {
+  return surface.normals(band) != nullptr && surface.reflection(band, 0.01).a > 0;
+}
+
 bool compile(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
   const Distribution *normals = surface.normals(band);
   if (normals == nullptr || surface.has_mirror() || surface.is_anisotropic())
@@ -96,12 +103,13 @@ bool compile(const Surface &surface, std::size_t band, backend::ChainSurface &ou
   if (!lobe)
     return false;
   out.lobe = kernel::round_lobe(*lobe);
-  out.has_lobe = surface.reflection(band, 0.01).a > 0;
+  out.has_lobe = has_lobe(surface, band);
   return (!out.has_lobe || fit_reflection(surface, band, out)) && fit_products(surface, band, out);
 }
 
 bool is_left_to_paths(const Surface &surface) {
-  return surface.has_mirror() || surface.material().measured;
+  return surface.has_mirror() || surface.material().measured ||
+         (has_lobe(surface, 0) && surface.width() < least_width);
 }
 
 } // namespace

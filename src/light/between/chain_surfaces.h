@@ -14,7 +14,7 @@ namespace umov {
 enum class ChainPart : std::uint8_t {
   Whole,        ///< chains
   WithoutLobes, ///< chains, but for the lobe of one seen by the lobe of the other: both are narrow
-  Nothing       ///< paths: a mirror, or a measured surface
+  Nothing       ///< paths: a mirror, a measured surface, or a lobe too narrow for either
 };
 
 /// Compiled surfaces, each counted once, with how finely they scatter and, where there is one, the

@@ -192,12 +192,9 @@ std::vector<IndirectLight> by_chains(const ChainStore &store, const PathGround &
     found.light[few[k]] = std::move(alone[k]);
   if (!store.surfaces().needs_paths() || enough.empty())
     return is_stopped(cancel) ? std::vector<IndirectLight>{} : std::move(found.light);
-  // Paths need not know their part better than chains know theirs.
   std::vector<double> beside(direct_i.begin(), direct_i.end());
-  for (std::size_t k = 0; k < beside.size(); ++k) {
-    const BandResult &known = found.light[k / bands].bands[k % bands];
-    beside[k] = std::max(beside[k] + known.stokes.i, known.half_width.i / options.accuracy);
-  }
+  for (std::size_t k = 0; k < beside.size(); ++k)
+    beside[k] += found.light[k / bands].bands[k % bands].stokes.i;
   const auto more = draw(enough, beside, &store.surfaces());
   for (std::size_t k = 0; k < more.size(); ++k) {
     IndirectLight &to = found.light[enough[k]];
