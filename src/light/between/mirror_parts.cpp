@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -69,7 +70,8 @@ void fit_rectangle(const Mesh &mesh, std::size_t begin, std::size_t end, Vec3<Bo
       }
     }
   out.across = cross(plane, out.along);
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  constexpr double far = std::numeric_limits<double>::infinity();
+  double low[3] = {far, far, far}, high[3] = {-far, -far, -far};
   for (std::size_t t = begin; t < end; ++t)
     for (const std::uint32_t v : mesh.triangles[t].vertex) {
       const Vec3<Body> at = mesh.positions[v];
