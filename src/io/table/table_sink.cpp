@@ -1,12 +1,16 @@
 #include <umov/io/table_sink.h>
 
 #include "io/table/light_curve_names.h"
+#include "io/table/row_texts.h"
 
+#include <algorithm>
 #include <future>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <umov/core/files.h>
 #include <umov/io/table_stream.h>
+#include <vector>
 
 namespace umov {
 namespace {
@@ -21,26 +25,35 @@ fs::path partial_name(fs::path path) {
   return path.replace_extension(".partial" + path.extension().string());
 }
 
-/// Rows that are kept until the end.
+/// An ECSV of blocks of rows, whose notes are those of the first.
+Result<void> write_ecsv(const fs::path &path, std::span<const Table> blocks, unsigned threads) {
+  UMOV_ASSIGN(file, FileInProgress::open(path));
+  UMOV_TRY(file.write(ecsv_header(blocks.front())));
+  for (const Table &rows : blocks)
+    UMOV_TRY(write_rows(file, rows, TextForm::Ecsv, threads));
+  return file.commit();
+}
+
+/// Rows that are kept until the end, as what is noted of them last stands above the first.
 class WholeFile final : public TableSink {
 public:
-  explicit WholeFile(fs::path path) : path_(std::move(path)) {}
+  WholeFile(fs::path path, unsigned threads) : path_(std::move(path)), threads_(threads) {}
   Result<void> add(Table &&rows) override {
-    table_.append(std::move(rows));
+    blocks_.push_back(std::move(rows));
     return {};
   }
   Result<void> note(const std::string &key, const std::string &value) override {
-    table_.note(key, value);
+    head().note(key, value);
     return {};
   }
-  Result<void> finish() override { return write_table(path_, table_); }
+  Result<void> finish() override { return write(path_); }
   Error stop(const Error &stopped) override {
     Error out = stopped;
-    if (table_.rows() == 0)
+    if (std::ranges::all_of(blocks_, [](const Table &rows) { return rows.rows() == 0; }))
       return out;
-    table_.note("status", "stopped early: " + stopped.message);
+    head().note("status", "stopped early: " + stopped.message);
     const fs::path target = partial_name(path_);
-    if (const auto done = write_table(target, table_); !done)
+    if (const auto done = write(target); !done)
       out.message = joined(out.message, "The finished rows are lost: " + done.error().text());
     else
       out.message = joined(out.message, "The finished rows are in " + target.string() + ".");
@@ -48,8 +61,18 @@ public:
   }
 
 private:
+  Table &head() { return blocks_.empty() ? blocks_.emplace_back() : blocks_.front(); }
+  Result<void> write(const fs::path &path) {
+    Table &all = head();
+    if (path.extension() == ".ecsv")
+      return write_ecsv(path, blocks_, threads_);
+    for (std::size_t k = 1; k < blocks_.size(); ++k)
+      all.append(std::move(blocks_[k]));
+    return write_table(path, all);
+  }
   fs::path path_;
-  Table table_;
+  unsigned threads_;
+  std::vector<Table> blocks_;
 };
 
 /// Rows that are written as they come: the disk works while the next block is computed.
@@ -109,7 +132,7 @@ Result<void> write_table(const fs::path &path, const Table &table) {
   if (suffix == ".csv")
     return write_file_atomically(path, to_csv(table));
   if (suffix == ".ecsv")
-    return write_file_atomically(path, to_ecsv(table));
+    return write_ecsv(path, {&table, 1}, 1);
   if (suffix == ".json")
     return write_file_atomically(path, to_json(table));
   if (suffix == ".fits") {
@@ -124,7 +147,7 @@ Result<void> write_table(const fs::path &path, const Table &table) {
 std::unique_ptr<TableSink> make_file_sink(const fs::path &path, unsigned threads) {
   if (is_streamed(path))
     return std::make_unique<GrowingFile>(path, threads);
-  return std::make_unique<WholeFile>(path);
+  return std::make_unique<WholeFile>(path, threads);
 }
 
 } // namespace umov

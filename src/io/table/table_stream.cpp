@@ -1,6 +1,7 @@
 #include <umov/io/table_stream.h>
 
 #include "io/table/fits_table.h"
+#include "io/table/row_texts.h"
 
 #include <algorithm>
 #include <optional>
@@ -21,21 +22,19 @@ struct TableStream::Writer {
   unsigned threads = 1;
 
   Result<void> append(const Table &table) {
+    if (!fits)
+      return write_rows(file, table, TextForm::Csv, threads);
     const std::size_t tasks = (table.rows() + rows_per_task - 1) / rows_per_task;
     std::vector<std::string> bytes(tasks);
     std::vector<Result<void>> done(tasks);
     parallel_for(tasks, threads, [&](std::size_t i) {
       const std::size_t begin = i * rows_per_task;
       const std::size_t end = std::min(table.rows(), begin + rows_per_task);
-      if (fits)
-        done[i] = fits->encode(table, begin, end, bytes[i]);
-      else
-        append_csv_rows(table, begin, end, bytes[i]);
+      done[i] = fits->encode(table, begin, end, bytes[i]);
     });
     for (std::size_t i = 0; i < tasks; ++i) {
       UMOV_TRY(done[i]);
-      const std::size_t count = std::min(rows_per_task, table.rows() - i * rows_per_task);
-      UMOV_TRY(fits ? fits->append(count, bytes[i]) : file.write(bytes[i]));
+      UMOV_TRY(fits->append(std::min(rows_per_task, table.rows() - i * rows_per_task), bytes[i]));
     }
     return {};
   }

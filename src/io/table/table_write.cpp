@@ -1,5 +1,7 @@
 #include <umov/io/table.h>
 
+#include "io/table/row_texts.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -13,31 +15,6 @@ namespace {
 /// A string as a YAML double-quoted scalar; JSON's form is one.
 std::string quoted_yaml(const std::string &text) {
   return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-std::string quoted_csv(const std::string &text, char delimiter) {
-  const char special[] = {'"', '\r', '\n', '\t', ' ', delimiter, '\0'};
-  const bool plain =
-      !text.empty() && text.front() != '#' && text.find_first_of(special) == std::string::npos;
-  if (plain || (text.empty() && delimiter == ','))
-    return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    out += c;
-    if (c == '"')
-      out += c;
-  }
-  return out + '"';
-}
-
-/// Text of a file that a spreadsheet would take for a formula and compute, with a ' before it,
-/// which they take for "text". A sign alone ("+X", "-2 deg") calls and refers to nothing.
-std::string without_formula(const std::string &text) {
-  const bool is_formula = text.starts_with('=') || text.starts_with('@') ||
-                          text.starts_with('\t') ||
-                          ((text.starts_with('+') || text.starts_with('-')) &&
-                           text.find_first_of("(!|") != std::string::npos);
-  return is_formula ? "'" + text : text;
 }
 
 const char *type_name(const Cells &cells) {
@@ -71,30 +48,9 @@ std::string terminal_cell(const Table &table, const Column &column, std::size_t 
   return table.text(column.name, row);
 }
 
-/// A number with as many digits as its column is written with in this row.
-double rounded(const Table &table, const Column &column, std::size_t row, double value) {
-  const Precision &precision = column.precision;
-  if (!std::isfinite(value) || value == 0 || precision == Precision{})
-    return value;
-  int digits = precision.significant;
-  if (digits == 0) {
-    int last = -precision.decimals; // power of ten of the last digit
-    if (!precision.error.empty()) {
-      const double error = table.number(precision.error, row);
-      if (!(error > 0) || !std::isfinite(error))
-        return value;
-      last = static_cast<int>(std::floor(std::log10(error))) - 1;
-    }
-    // Two digits of the value stay whatever its error is; ten are enough for those known exactly.
-    const int first = static_cast<int>(std::floor(std::log10(std::abs(value))));
-    digits = std::clamp(first - last + 1, 2, precision.error.empty() ? 16 : 10);
-  }
-  return parse_number(fmt::format("{:.{}e}", value, digits - 1)).value_or(value);
-}
-
 } // namespace
 
-std::string to_ecsv(const Table &table) {
+std::string ecsv_header(const Table &table) {
   std::string out = "# %ECSV 1.0\n# ---\n# datatype:\n";
   for (const Column &c : table.columns()) {
     out += fmt::format("# - {{name: {}, ", quoted_yaml(c.name));
@@ -110,21 +66,13 @@ std::string to_ecsv(const Table &table) {
   }
   out += "# schema: astropy-2.0\n";
   for (std::size_t c = 0; c < table.columns().size(); ++c)
-    out += (c ? " " : "") + quoted_csv(table.columns()[c].name, ' ');
-  out += '\n';
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    for (std::size_t c = 0; c < table.columns().size(); ++c) {
-      const Column &column = table.columns()[c];
-      out += c ? " " : "";
-      if (const auto *numbers = std::get_if<std::vector<double>>(&column.cells))
-        out += shortest((*numbers)[row]);
-      else if (const auto *texts = std::get_if<std::vector<std::string>>(&column.cells))
-        out += quoted_csv((*texts)[row], ' ');
-      else
-        out += quoted_csv(table.text(column.name, row), ' ');
-    }
-    out += '\n';
-  }
+    out += (c ? " " : "") + quoted_cell(table.columns()[c].name, TextForm::Ecsv);
+  return out + '\n';
+}
+
+std::string to_ecsv(const Table &table) {
+  std::string out = ecsv_header(table);
+  append_rows(table, 0, table.rows(), TextForm::Ecsv, out);
   return out;
 }
 
@@ -141,29 +89,14 @@ std::string csv_header(const Table &table) {
     out += csv_note(key + ": " + value);
   for (const Column &c : table.columns()) {
     const char *comma = names.empty() ? "" : ",";
-    names += comma + quoted_csv(c.name, ',');
+    names += comma + quoted_cell(c.name, TextForm::Csv);
     units += comma + c.unit;
   }
   return out + "# unit: " + units + '\n' + names + '\n';
 }
 
 void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std::string &out) {
-  for (std::size_t row = begin; row < end; ++row) {
-    for (std::size_t c = 0; c < table.columns().size(); ++c) {
-      const Column &column = table.columns()[c];
-      if (c > 0)
-        out += ',';
-      if (const auto *numbers = std::get_if<std::vector<double>>(&column.cells)) {
-        if (!std::isnan((*numbers)[row]))
-          out += shortest(rounded(table, column, row, (*numbers)[row]));
-      } else if (const auto *text = std::get_if<std::vector<std::string>>(&column.cells)) {
-        out += quoted_csv(without_formula((*text)[row]), ',');
-      } else {
-        out += quoted_csv(table.text(column.name, row), ',');
-      }
-    }
-    out += '\n';
-  }
+  append_rows(table, begin, end, TextForm::Csv, out);
 }
 
 std::string to_csv(const Table &table) {

@@ -1,3 +1,5 @@
+#include "io/table/row_texts.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -61,6 +63,30 @@ TEST(Table, NumbersReadBackBitForBit) {
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_EQ(again->number("x", 0), 1.0 / 3);
   EXPECT_EQ(again->number("x", 2), -1.7976931348623157e308);
+}
+
+/// A cell that is as the one above it takes its text from there: alone it has none to take.
+TEST(Table, RowsAreTheSameWhateverStandsAboveThem) {
+  const double nan = std::nan("");
+  Table table;
+  table.add("x", "", "", std::vector<double>{1. / 3, 1. / 3, 1. / 3, 0, -0., -0., nan, nan});
+  table.add("x_err", "", "", std::vector<double>{.01, .01, .1, .1, .1, .1, .1, .1});
+  table.add("n", "", "", std::vector<std::int64_t>{-5, -5, 7, 7, 7, 7, 1'000'000, 1'000'000});
+  table.add("name", "", "",
+            std::vector<std::string>{"=a b", "=a b", "#", "", "", "c", "c", "d\"e"});
+  table.add("flag", "", "", std::vector<bool>{true, true, false, false, true, true, true, true});
+  table.set_precision("x", {"x_err", 0, 0});
+  for (const TextForm form : {TextForm::Csv, TextForm::Ecsv}) {
+    std::string whole, alone;
+    append_rows(table, 0, table.rows(), form, whole);
+    for (std::size_t row = 0; row < table.rows(); ++row)
+      append_rows(table, row, row + 1, form, alone);
+    EXPECT_EQ(whole, alone);
+  }
+  std::string csv;
+  append_csv_rows(table, 1, 5, csv);
+  EXPECT_EQ(csv, "0.333,0.01,-5,\"'=a b\",True\n0.33,0.1,7,\"#\",False\n0,0.1,7,,False\n"
+                 "-0,0.1,7,,True\n");
 }
 
 TEST(Table, JsonHasNullForUndefined) {
