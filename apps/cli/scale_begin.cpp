@@ -4,6 +4,7 @@
 
 #include "job_console.h"
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 #include <fmt/format.h>
@@ -66,15 +67,26 @@ Result<void> hold_to(const std::string &instruction_set) {
 } // namespace
 
 Result<void> refuse_others(const ScaleJobOptions &o, const scale::JobLock &lock) {
+  const auto refuse = [](const std::string &given, const std::string &kept) {
+    return fail(ErrorCode::Usage, fmt::format("{}: the job of the folder {}, as was said when it "
+                                              "was begun. Leave it out, or begin another in a new "
+                                              "folder",
+                                              given, kept));
+  };
+  if (o.per_shard != 0 && std::min(o.per_shard, lock.total) != lock.per_shard)
+    return refuse(fmt::format("--per-shard {}", o.per_shard),
+                  fmt::format("has {} {} in a shard", lock.per_shard, lock.unit));
+  if (!o.instruction_set.empty() && o.instruction_set != lock.instruction_set)
+    return refuse("--isa " + o.instruction_set, lock.instruction_set.empty()
+                                                    ? "is held to no instruction set"
+                                                    : "is held to " + lock.instruction_set);
+  // With a verb the whole job is compared, and the first difference told.
   if (!o.verb.empty() || o.reductions.empty() || o.reductions == lock.reductions)
     return {};
-  return fail(ErrorCode::Usage,
-              fmt::format("--reduce {}: the job of the folder keeps {}. What a job keeps is said "
-                          "when it is begun: leave it out, or begin another in a new folder",
-                          printable(fmt::format("{}", fmt::join(o.reductions, ", "))),
-                          lock.reductions.empty()
-                              ? "all rows"
-                              : fmt::format("{}", fmt::join(lock.reductions, ", "))));
+  return refuse("--reduce " + printable(fmt::format("{}", fmt::join(o.reductions, ", "))),
+                "keeps " + (lock.reductions.empty()
+                                ? "all rows"
+                                : fmt::format("{}", fmt::join(lock.reductions, ", "))));
 }
 
 std::string own_program() {
@@ -128,8 +140,7 @@ Result<scale::JobFolder> folder_of(const ScaleJobOptions &o, const scale::PlanSe
     UMOV_ASSIGN(folder, scale::JobFolder::open(o.folder));
     UMOV_TRY(refuse_others(o, folder.lock()));
     const bool is_same = o.verb == folder.lock().verb && o.arguments == folder.lock().arguments &&
-                         o.reductions == folder.lock().reductions &&
-                         (o.per_shard == 0 || o.per_shard == folder.lock().per_shard);
+                         o.reductions == folder.lock().reductions;
     if (o.verb.empty() || is_same)
       return std::move(folder);
   }

@@ -27,7 +27,8 @@ std::string own_program();
 Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanSettings &settings,
                                     const Common &common, Diagnostics &diagnostics,
                                     std::unique_ptr<jobs::RangedJob> &job);
-/// Usage for a --reduce without a verb that is not that of the job in the folder.
+/// Usage for --per-shard, --isa and (without a verb) --reduce that are not those of the job in the
+/// folder.
 Result<void> refuse_others(const ScaleJobOptions &o, const scale::JobLock &lock);
 /// The folder of the options: that of a job which is there, or one begun anew, when its cost has
 /// been told and is not too much.

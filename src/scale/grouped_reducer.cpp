@@ -43,8 +43,8 @@ std::vector<double> hidden(const Table &kept, const char *name) {
 }
 Table shown(const Table &kept) {
   Table out = kept;
-  out.remove(order_column);
-  out.remove(first_column);
+  for (const char *name : {order_column, first_column, sum_column, squares_column})
+    out.remove(name);
   return out;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Private: what histograms and extremes of groups have in common.
+// Private: what histograms, extremes and likelihoods of groups have in common.
 
 #include "scale/reduction_text.h"
 #include "scale/row_groups.h"
@@ -19,7 +19,9 @@ Result<std::vector<double>> numbers_of(const Table &rows, const std::string &nam
 /// Of rows where they stand by a column, and of their groups: in what shards keep, and in nothing
 /// that is shown.
 inline constexpr const char *order_column = "_order", *first_column = "_first";
-/// The cells of such a column; none where there is none.
+/// Exact sums of a group, in what shards keep.
+inline constexpr const char *sum_column = "_sum", *squares_column = "_squares";
+/// The cells of such a column of numbers; none where there is none.
 std::vector<double> hidden(const Table &kept, const char *name);
 /// Without these columns.
 Table shown(const Table &kept);
@@ -53,5 +55,6 @@ protected:
 
 std::unique_ptr<Reducer> make_histogram(Wanted wanted, std::string text);
 std::unique_ptr<Reducer> make_extremes(Wanted wanted, std::string text);
+std::unique_ptr<Reducer> make_likelihood(Wanted wanted, std::string text);
 
 } // namespace umov::scale

@@ -79,6 +79,8 @@ Result<std::unique_ptr<Reducer>> make_reducer(const std::string &text) {
   UMOV_ASSIGN(wanted, read_wanted(text));
   if (wanted.kind == Kind::Histogram || wanted.kind == Kind::LogHistogram)
     return make_histogram(std::move(wanted), text);
+  if (wanted.kind == Kind::Likelihood)
+    return make_likelihood(std::move(wanted), text);
   return make_extremes(std::move(wanted), text);
 }
 

@@ -14,7 +14,8 @@ namespace umov::scale {
 namespace {
 
 constexpr std::size_t most_bins = 1'000'000, most_rows = 1'000'000;
-constexpr std::array<const char *, 4> kind_names{"histogram", "log-histogram", "most", "least"};
+constexpr std::array<const char *, 5> kind_names{"histogram", "log-histogram", "most", "least",
+                                                 "likelihood"};
 
 std::vector<std::string> split(const std::string &text, char at) {
   std::vector<std::string> out;
@@ -46,42 +47,77 @@ std::vector<double> edges_of(const Wanted &wanted) {
   return out;
 }
 
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// Nothing where all is well, else what is wrong.
+std::string read_bins(const Words &words, Wanted &out) {
+  const auto low = parse_number(words[2]), high = parse_number(words[3]);
+  const bool is_log = out.kind == Kind::LogHistogram;
+  if (!low || !high || !(*low < *high) || (is_log && !(*low > 0)))
+    return is_log ? "0 < LOW < HIGH" : "LOW < HIGH";
+  out.low = *low, out.high = *high;
+  return are_edges(edges_of(out))
+             ? ""
+             : "LOW and HIGH are too far apart, or too near for so many bins: the edges between "
+               "them are no rising numbers";
+}
+
+std::string read_count(const std::string &word, std::size_t most, Wanted &out) {
+  const auto end = word.data() + word.size();
+  if (std::from_chars(word.data(), end, out.count).ptr != end || out.count == 0 || out.count > most)
+    return "\"" + printable(word) + "\" is no number from 1 to a million";
+  return "";
+}
+
+std::string read_measured(const Words &words, Wanted &out) {
+  const Words columns = split(words[1], '+'), values = split(words[2], '+'),
+              errors = split(words[3], '+');
+  if (values.size() != columns.size() || errors.size() != columns.size())
+    return "a value and an error of each column";
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto value = parse_number(values[k]), error = parse_number(errors[k]);
+    if (!value || !error || !(*error > 0))
+      return "a VALUE, and an ERROR above 0";
+    out.measured.push_back({columns[k], *value, *error});
+  }
+  return "";
+}
+
+} // namespace
+
 Result<Wanted> read_wanted(const std::string &text) {
   const auto refuse = [&text](const std::string &why) {
     return fail(ErrorCode::Usage,
                 fmt::format("--reduce {}: {}. Expected: histogram:COLUMN:LOW:HIGH:BINS, the same "
-                            "with log-histogram, most:COLUMN:COUNT or least:COLUMN:COUNT, and "
-                            ":COLUMN behind it for one of each of its values; such as "
-                            "log-histogram:intensity:1e-6:100:80",
+                            "with log-histogram, most:COLUMN:COUNT, least:COLUMN:COUNT or "
+                            "likelihood:COLUMN:VALUE:ERROR, and :COLUMN behind it for one of each "
+                            "of its values; such as log-histogram:intensity:1e-6:100:80",
                             printable(text), why));
   };
-  const std::vector<std::string> words = split(text, ':');
+  const Words words = split(text, ':');
   const auto name = std::ranges::find(kind_names, words.front());
   if (name == kind_names.end())
     return refuse("no such reduction");
   Wanted out;
   out.kind = static_cast<Kind>(name - kind_names.begin());
   const bool is_histogram = out.kind == Kind::Histogram || out.kind == Kind::LogHistogram;
-  const std::size_t least = is_histogram ? 5 : 3;
+  const bool is_likelihood = out.kind == Kind::Likelihood;
+  const std::size_t least = is_histogram ? 5 : is_likelihood ? 4 : 3;
   if (words.size() < least || words.size() > least + 1 ||
       std::ranges::any_of(words, [](const std::string &word) { return word.empty(); }))
-    return refuse(is_histogram ? "a column, two numbers and a number of bins"
-                               : "a column and a number of rows");
+    return refuse(is_histogram    ? "a column, two numbers and a number of bins"
+                  : is_likelihood ? "a column, a value and its error"
+                                  : "a column and a number of rows");
   out.column = words[1];
-  const std::string &count = words[least - 1];
-  const auto end = count.data() + count.size();
-  if (std::from_chars(count.data(), end, out.count).ptr != end || out.count == 0 ||
-      out.count > (is_histogram ? most_bins : most_rows))
-    return refuse("\"" + printable(count) + "\" is no number from 1 to a million");
-  if (is_histogram) {
-    const auto low = parse_number(words[2]), high = parse_number(words[3]);
-    if (!low || !high || !(*low < *high) || (out.kind == Kind::LogHistogram && !(*low > 0)))
-      return refuse(out.kind == Kind::LogHistogram ? "0 < LOW < HIGH" : "LOW < HIGH");
-    out.low = *low, out.high = *high;
-    if (!are_edges(edges_of(out)))
-      return refuse("LOW and HIGH are too far apart, or too near for so many bins: the edges "
-                    "between them are no rising numbers");
-  }
+  std::string problem =
+      is_likelihood ? read_measured(words, out)
+                    : read_count(words[least - 1], is_histogram ? most_bins : most_rows, out);
+  if (problem.empty() && is_histogram)
+    problem = read_bins(words, out);
+  if (!problem.empty())
+    return refuse(problem);
   if (words.size() > least)
     out.by = split(words[least], '+');
   return out;
@@ -91,7 +127,7 @@ std::string reduced_name(const std::string &text) {
   const std::size_t kind = text.find(':'), column = text.find(':', kind + 1);
   std::string out = text.substr(0, column);
   std::ranges::replace_if(
-      out, [](char c) { return c == ':' || c == '-'; }, '_');
+      out, [](char c) { return c == ':' || c == '-' || c == '+'; }, '_');
   return out;
 }
 

@@ -8,7 +8,13 @@
 
 namespace umov::scale {
 
-enum class Kind { Histogram, LogHistogram, Most, Least };
+enum class Kind { Histogram, LogHistogram, Most, Least, Likelihood };
+
+/// A value that was measured, and its standard deviation.
+struct Measured {
+  std::string column;
+  double value = 0, error = 0;
+};
 
 /// What a text asks for.
 struct Wanted {
@@ -16,6 +22,7 @@ struct Wanted {
   std::string column;
   double low = 0, high = 0;
   std::size_t count = 0;
+  std::vector<Measured> measured; ///< of a likelihood
   std::optional<std::vector<std::string>> by;
 };
 

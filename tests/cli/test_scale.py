@@ -1,6 +1,7 @@
 """Jobs in parts: whatever ends them, the merged bytes are those of the plain command."""
 import contextlib
 import json
+import math
 import os
 import random
 import re
@@ -408,6 +409,29 @@ def test_the_example_of_extremes_of_passes_in_the_page_runs(umov, tmp_path):
     assert read_csv(tmp_path / "kept.csv") == expected and len(expected) > 5
 
 
+def test_likelihoods_of_a_measurement_are_those_of_the_plain_table(umov, scenario, tmp_path):
+    """Of two columns in each band, by Python's exact sum over the plain rows. Any cut: the same bytes."""
+    command = slow_signature_of(umov, scenario, 200)
+    plain(umov, command, "plain.csv")
+    rows, merged = read_csv(tmp_path / "plain.csv"), set()
+    for per_shard in (200, 67, 9):
+        job = f"job{per_shard}"
+        done = umov("scale", "run", "--reduce", "likelihood:intensity+sun_x:0.03+-0.2:0.01+0.2", "--per-shard", per_shard, job, *command)
+        assert done.code == 0, done.err
+        assert umov("scale", "merge", job, "-o", "likelihood.csv").code == 0
+        merged.add((tmp_path / "likelihood.csv").read_bytes())
+    assert len(merged) == 1
+    got = read_csv(tmp_path / "likelihood.csv")
+    assert [row["band"] for row in got] == list(dict.fromkeys(row["band"] for row in rows))
+    for told in got:
+        mine = [row for row in rows if row["band"] == told["band"]]
+        likely = [math.exp(-((float(row["intensity"]) - 0.03) / 0.01) ** 2 / 2 - ((float(row["sun_x"]) + 0.2) / 0.2) ** 2 / 2) for row in mine]
+        assert int(told["count"]) == len(mine) == 200 and max(likely) > 10 * min(likely)
+        # 1e-12: the exponents are rounded before exp, here and there.
+        assert float(told["log_likelihood"]) == pytest.approx(math.log(math.fsum(likely) / 200 / (2 * math.pi * 0.01 * 0.2)), rel=1e-12)
+        assert float(told["effective_rows"]) == pytest.approx(math.fsum(likely) ** 2 / math.fsum(one ** 2 for one in likely), rel=1e-11)
+
+
 @pytest.mark.parametrize("reduction", ["histogram:sunlit_share:0:1:4", "most:sunlit_share:3"])
 def test_a_reduced_search_without_a_pass_ends_as_the_plain_one(umov, tmp_path, reduction):
     command = passes_of_thirty(tmp_path, "--alt-min-deg", 89.9)
@@ -428,6 +452,26 @@ def test_what_a_folder_does_not_keep_is_refused(umov, scenario, tmp_path):
             assert done.code == 2 and "most:intensity:3" in done.err and ("most:intensity:2" if kept else "all rows") in done.err, done.err
     assert not shards(tmp_path / "plain") and not shards(tmp_path / "kept")
     assert umov("scale", "run", "--reduce", "most:intensity:2", "kept").code == 0
+
+
+@pytest.mark.parametrize("given,kept", [(("--per-shard", 7), "has 10 poses in a shard"), (("--isa", "avx2"), "is held to sse4")])
+@pytest.mark.parametrize("with_verb", [False, True])
+def test_how_a_folder_was_cut_and_held_stays(umov, scenario, tmp_path, given, kept, with_verb):
+    """With the verb behind it, too: neither goes into what is compared there, or only as another job."""
+    command = signature_of(scenario, 20)
+    assert umov("scale", "lock", "--per-shard", 10, "--isa", "sse4", "job", *command).code == 0
+    for verb in ("run", "lock", "script slurm", *([] if with_verb else ["plan"])):
+        done = umov("scale", *verb.split(), *given, "job", *(command if with_verb else []))
+        assert done.code == 2 and f"{given[0]} {given[1]}" in done.err and kept in done.err, done.err
+    assert not shards(tmp_path / "job")
+    again = umov("scale", "run", "--per-shard", 10, "--isa", "sse4", "job", *(command if with_verb else []))
+    assert again.code == 0 and len(shards(tmp_path / "job")) == 2, again.err
+
+
+def test_more_than_there_are_in_a_shard_is_all_of_them(umov, scenario, tmp_path):
+    command = signature_of(scenario, 20)
+    for _ in range(2):
+        assert umov("scale", "run", "--per-shard", 1000, "job", *command).code == 0
 
 
 def test_a_cluster_is_told_all_that_it_was_given(umov, scenario, tmp_path, monkeypatch):
@@ -475,6 +519,7 @@ def test_passes_without_what_is_asked_for_are_passes(umov, tmp_path):
 @pytest.mark.parametrize("text,said", [
     ("mean:intensity", "no such reduction"), ("histogram:intensity:1:0:5", "LOW < HIGH"), ("histogram:intensity:-1e308:1e308:4", "too far apart"), ("log-histogram:intensity:0:1:5", "0 < LOW < HIGH"),
     ("histogram:intensity:0:1", "a number of bins"), ("most:intensity:0", "from 1 to a million"), ("most:brightness:5", "there are pose, band"),
+    ("likelihood:intensity:1:0", "an ERROR above 0"), ("likelihood:q_scat+u_scat:0:1", "of each column"), ("likelihood:band:1:1", "no column of numbers"),
     ("most:band:5", "no column of numbers"), ("most:intensity:5:sun_x", "whole numbers was expected"),
 ])
 def test_reductions_that_are_none_are_refused_before_anything_is_made(umov, scenario, tmp_path, text, said):

@@ -1,6 +1,6 @@
 #pragma once
 // What is kept of a job's rows where they are made faster than they can be stored: histograms, the
-// most of them.
+// most of them, likelihoods.
 
 #include <memory>
 #include <span>
@@ -32,8 +32,10 @@ public:
 /// Of a text as the command line has it: "histogram:COLUMN:LOW:HIGH:BINS" (bins of one width, LOW
 /// belongs to the first, HIGH to none), "log-histogram:..." (of one ratio), "most:COLUMN:COUNT" or
 /// "least:COLUMN:COUNT" (whole rows, ordered by that column, earlier ones first where it is the
-/// same). All are of each band apart where the rows have a column of that name; ":BY" or ":BY+BY"
-/// behind them names other columns. Usage for another text.
+/// same), "likelihood:COLUMN+COLUMN:VALUE+VALUE:ERROR+ERROR" (logarithm of the mean over the rows
+/// of the normal density of measured values, summed exactly). All are of each band apart where the
+/// rows have a column of that name; ":BY" or ":BY+BY" behind them names other columns. Usage for
+/// another text.
 Result<std::unique_ptr<Reducer>> make_reducer(const std::string &text);
 /// The name of its table: "log_histogram_intensity".
 std::string reduced_name(const std::string &text);

@@ -179,6 +179,79 @@ TEST(Reductions, AreOfAnyNumberOfValuesInTimeThatGrowsWithIt) {
   EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 10);
 }
 
+/// log of the mean of normal densities, and (sum w)^2 / sum w^2, by the long way.
+std::pair<double, double> likelihood_of(const std::vector<double> &values, double value,
+                                        double error) {
+  std::vector<long double> logs;
+  for (const double one : values)
+    if (!std::isnan(one))
+      logs.push_back(-std::pow((static_cast<long double>(one) - value) / error, 2) / 2);
+  const long double most = *std::ranges::max_element(logs);
+  long double sum = 0, squares = 0;
+  for (const long double one : logs) {
+    sum += std::exp(one - most);
+    squares += std::exp(2 * (one - most));
+  }
+  const long double area = error * std::sqrt(2 * std::acos(-1.0L));
+  return {
+      static_cast<double>(std::log(sum / static_cast<long double>(values.size()) / area) + most),
+      static_cast<double>(sum * sum / squares)};
+}
+
+TEST(Reductions, SumLikelihoodsExactlyHoweverTheRowsAreCut) {
+  std::vector<double> values;
+  for (std::uint64_t k = 0; k < 6000; ++k)
+    values.push_back(k % 100 == 7 ? nan : static_cast<double>((k * 2'654'435'761U) % 10'007) / 1e4);
+  const Table all = rows(values, std::vector<std::string>(values.size(), "V"));
+  // In the middle of the values, at their edge, and so far away that no density is a double.
+  for (const auto &[value, error] : {std::pair{0.3, 0.002}, {1.01, 0.01}, {400.0, 0.5}}) {
+    const std::string text =
+        "likelihood:intensity:" + std::to_string(value) + ":" + std::to_string(error);
+    const auto [log_likelihood, effective] = likelihood_of(values, value, error);
+    const std::string whole = to_ecsv(kept(text, all, 0));
+    for (const std::size_t cut : {1, 777, 3000, 6000}) {
+      const Table table = kept(text, all, cut);
+      EXPECT_EQ(to_ecsv(table), whole) << text << " cut at " << cut;
+      EXPECT_EQ(table.columns().size(), 4u);
+      EXPECT_EQ(table.number("count", 0), 6000);
+      // 1e-12: exponents up to 3.2e5 are rounded to 1e-16 of themselves before exp takes them.
+      EXPECT_NEAR(table.number("log_likelihood", 0), log_likelihood,
+                  1e-12 * std::abs(log_likelihood));
+      EXPECT_NEAR(table.number("effective_rows", 0), effective, 1e-9 * effective);
+    }
+  }
+}
+
+TEST(Reductions, OfTwoMeasuredValuesAreOfBothInARow) {
+  Table two = rows({1, 2, nan}, {"V", "V", "V"});
+  two.add("q", "", "", std::vector<double>{0.1, 0.3, 0.1});
+  const Table table = kept("likelihood:intensity+q:1+0.1:1+0.1", two, 1);
+  // Of three rows: the values themselves, one and two standard deviations beside them, none.
+  const double area = 0.1 * 2 * std::acos(-1);
+  EXPECT_NEAR(table.number("log_likelihood", 0), std::log((1 + std::exp(-0.5 - 2.0)) / 3 / area),
+              1e-14);
+  EXPECT_EQ(reduced_name("likelihood:intensity+q:1+0.1:1+0.1"), "likelihood_intensity_q");
+  const Table none = kept("likelihood:intensity:1:1", rows({nan}, {"V"}), 1);
+  EXPECT_TRUE(std::isnan(none.number("log_likelihood", 0)));
+}
+
+TEST(Reductions, OfWhatNoShardKeptAreRefused) {
+  const std::string text = "likelihood:intensity:1:1";
+  const auto reducer = make_reducer(text);
+  EXPECT_FALSE((*reducer)->join(some_rows()));
+  const auto other = make_reducer("histogram:intensity:0:1:2");
+  ASSERT_TRUE((*other)->take(some_rows()));
+  EXPECT_FALSE((*reducer)->join((*other)->kept()));
+  for (const char *sums : {"0 0", "a 0 1;", "0 0 18014398509481984;", "0 -1 1;"}) {
+    const auto kept_by = make_reducer(text);
+    ASSERT_TRUE((*kept_by)->take(some_rows()));
+    Table bad = (*kept_by)->kept();
+    bad.remove("_sum");
+    bad.add("_sum", "", "", std::vector<std::string>(2, sums));
+    EXPECT_FALSE((*reducer)->join(bad)) << sums;
+  }
+}
+
 TEST(Reductions, ThatWouldFillTheMemoryAreRefusedByName) {
   const Table ten = rows(std::vector<double>(11, 1), std::vector<std::string>(11, "V"));
   const auto histogram = make_reducer("histogram:intensity:0:2:1000000:pose");
@@ -189,11 +262,12 @@ TEST(Reductions, ThatWouldFillTheMemoryAreRefusedByName) {
   EXPECT_NE(done.error().message.find("10000000 rows"), std::string::npos);
 }
 
-TEST(Reductions, WhoseEdgesAreNoRisingNumbersAreRefused) {
+TEST(Reductions, WhoseNumbersAreNoneAreRefused) {
   for (const char *text :
        {"histogram:x:-1e308:1e308:4", "log-histogram:x:1e-300:1e300:4",
         "histogram:x:1:1.0000000000000002:4", "log-histogram:x:1:1.000000000000001:100",
-        "histogram:x:0:inf:4", "histogram:x:0:nan:4"})
+        "histogram:x:0:inf:4", "histogram:x:0:nan:4", "likelihood:x:1:0", "likelihood:x:1",
+        "likelihood:x+y:1:1", "likelihood:x:nan:1", "likelihood:x:1:inf"})
     EXPECT_FALSE(make_reducer(text)) << text;
   EXPECT_TRUE(make_reducer("histogram:x:-1e307:1e307:1000000"));
 }
