@@ -252,7 +252,7 @@ class Played:
     """A cluster whose records are made up: `how` says of each call of a shard what comes of it, "lost" or a record."""
 
     def __init__(self, how):
-        self.how, self.asked, self.status, self.client = how, [], "running", self
+        self.how, self.asked, self.tasks, self.status, self.client = how, [], [], "running", self
 
     def workers(self):
         return {"one"}
@@ -263,16 +263,23 @@ class Played:
     def cancel(self, futures):
         pass
 
-    def map(self, do, indices, *same, pure, key):
-        return [self.future(index, name) for index, name in zip(indices, key)]
+    def map(self, do, indices, *, pure, key, **same):
+        return [self.future(json.loads(text), name) for text, name in zip(indices, key)]
 
-    def future(self, index, name):
+    def future(self, indices, name):
         import types
-        self.asked.append(index)
-        came = self.how(index, self.asked.count(index))
-        out = types.SimpleNamespace(key=name, status="lost" if came == "lost" else "finished", result=lambda: came, release=lambda: None)
-        out.add_done_callback = lambda tell: tell(out)
-        return out
+        self.asked += indices
+        self.tasks.append(indices)
+        came = []
+        for index in indices:
+            came.append(self.how(index, self.asked.count(index)))
+            if came[-1] == "lost" or came[-1]["status"] != "done":  # as do_shards
+                break
+        is_lost = came[-1] == "lost"
+        return types.SimpleNamespace(key=name, status="lost" if is_lost else "finished", came=came, release=lambda: None)
+
+    def gather(self, futures, errors):
+        return [future.came for future in futures]
 
 
 def driver_of(scene, how, shards=20):
@@ -289,8 +296,31 @@ def record(index, status="done"):
 def test_a_record_that_is_lost_is_asked_for_again(scene):
     """Its worker was killed when the shard was done: no other is asked for twice, and nothing has failed."""
     driver, played = driver_of(scene, lambda index, turn: "lost" if index in (3, 4) and turn == 1 else record(index))
+    driver.task_s = 0.0  # a task for each
     driver.run()
     assert sorted(played.asked) == sorted([*range(20), 3, 4]) and (driver.done, driver.failed) == (20, 0)
+
+
+def test_short_shards_share_a_task_and_what_it_leaves_is_asked_for_again(scene):
+    """Shards of 0.2 s: five would be a second; one worker has four tasks before it, so the first are of five and the last of one."""
+    driver, played = driver_of(scene, lambda index, turn: record(index, "failed" if index == 2 else "done"), 40)
+    driver.predicted_s = 0.2
+    driver.run()
+    assert played.tasks[:2] == [[0, 1, 2, 3, 4], [5, 6, 7, 8, 9]] and [3] in played.tasks and {len(task) for task in played.tasks} == {1, 2, 3, 5}
+    assert sorted(played.asked) == sorted([*range(40), 3, 4]) and (driver.done, driver.failed) == (39, 1)
+
+
+def test_a_task_ends_with_a_shard_that_failed_or_when_its_time_is_over(monkeypatch):
+    from umov import _scale_store
+    same = {"program": "", "place": "out", "threads": 1, "timeout_s": 60.0, "memory_mb": None}
+
+    def do_shard(index, *_):
+        time.sleep(0.05)
+        return record(index, "failed" if index == 5 else "done")
+
+    monkeypatch.setattr(_scale_store, "do_shard", do_shard)
+    assert [one["index"] for one in _scale_store.do_shards("[1, 4, 5, 6]", at_most_s=60, **same)] == [1, 4, 5]
+    assert [one["index"] for one in _scale_store.do_shards("[1, 2, 3, 4]", at_most_s=0.07, **same)] == [1, 2]
 
 
 def test_shards_without_memory_are_told_where_others_are_done(scene):
@@ -308,12 +338,16 @@ def test_time_left_begins_with_what_comes_before_the_first_shard(scene):
     assert driver.seconds_left(1) == pytest.approx(18.5 * 2)
 
 
-def test_what_the_folder_does_not_keep_is_refused(scene):
-    umov.scale.run(job_of(scene, 20), "out", reduce="most:intensity:2")
+def test_what_is_not_that_of_the_folder_is_refused(scene):
+    umov.scale.run(job_of(scene, 20), "out", reduce="most:intensity:2", per_shard=10, isa="sse4")
     for cluster in (None, "local:1"):
-        with pytest.raises(umov.UsageError, match="most:intensity:3.*most:intensity:2"):
-            umov.scale.run(None, "out", cluster=cluster, reduce="most:intensity:3")
-        assert not umov.scale.run(None, "out", cluster=cluster, reduce="most:intensity:2").missing
+        for given, said in (({"reduce": "most:intensity:3"}, "most:intensity:3.*most:intensity:2"), ({"per_shard": 5}, "5.*has 10 poses in a shard"),
+                            ({"isa": "avx2"}, "avx2.*held to sse4")):
+            with pytest.raises(umov.UsageError, match=said):
+                umov.scale.run(None, "out", cluster=cluster, **given)
+        assert not umov.scale.run(None, "out", cluster=cluster, reduce="most:intensity:2", per_shard=10, isa="sse4").missing
+    with pytest.raises(umov.UsageError, match="5.*has 10 poses in a shard"):
+        umov.scale.run(job_of(scene, 20), "out", cluster="local:1", reduce="most:intensity:2", per_shard=5)
 
 
 def test_a_full_disk_ends_the_job_on_a_cluster_and_it_goes_on(scene, tmp_path):

@@ -6,15 +6,13 @@ import itertools
 import json
 import os
 import pathlib
-import queue
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from ._scale_store import do_shard_of_store, is_url
-from ._scale_worker import do_shard
+from ._scale_store import do_shards, is_url
 from .errors import DeviceError, Error, Interrupted, UsageError, error_from
 
 if TYPE_CHECKING:
@@ -27,6 +25,8 @@ SETTINGS = {"distributed.scheduler.allowed-failures": 1000, "distributed.schedul
 _PATIENCE_S = 30.0  # of shards in hand after Ctrl-C
 _EXHAUSTED = 10  # attempts without memory before the first shard is done, after which no other is made
 _LOSSES = 10  # of workers without a shard done between them, after which it is said that none will be
+_LOOK_S = 0.05  # between two looks at what has ended: what is taken together costs the scheduler one message
+_TASK_S = 1.0  # a task costs two processes a millisecond each, however short it is: shards that are short share one
 
 
 def _loopback(address: str) -> bool:
@@ -100,14 +100,14 @@ class Driver:
         predicted = lock["predicted"]
         shard_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) + predicted["cpu_s"] * lock["per_shard"]
         self.result, self.cluster, self.quiet = result, cluster, quiet
-        self.do = do_shard_of_store if is_url(result.folder) else do_shard
-        self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * shard_s), memory_mb)
-        self.todo: Iterator[int] = iter(result.missing)
+        self.threads, self.timeout_s, self.memory_mb = threads, timeout_s or max(60.0, 10 * shard_s), memory_mb
+        self.do, self.task_s = do_shards, _TASK_S
+        missing = result.missing
+        self.todo: Iterator[int] = iter(missing)
         self.submits = self.workers = 0
-        self.has_lost = False
-        self.futures: dict[str, Any] = {}
-        self.ended: queue.Queue[Any] = queue.Queue()
-        self.left = len(result.missing)
+        self.has_rest = False
+        self.futures: dict[str, tuple[Any, list[int]]] = {}  # of each task, with its shards
+        self.left = self.waiting = len(missing)
         self.failed_before = result._names_of_failed()
         self.done = self.failed = self.lost = self.exhausted = 0
         self.seconds: list[float] = []
@@ -122,17 +122,16 @@ class Driver:
 
     def run(self) -> None:
         self.workers = len(self.cluster.workers())
-        window = max(200, 4 * self.workers)
-        self._submit(window)
+        self._submit(self._window())
         while self.futures:
             try:
                 self._watch()
                 if not self._take_what_ended() and self.stopped and time.monotonic() - self.stopped_at > _PATIENCE_S:
                     break
                 # Several at once: each message costs the scheduler as much as a task, and nobody is idle meanwhile.
-                free = window - len(self.futures)
-                if not self.stopped and (free >= window // 8 or self.has_lost):
-                    self.has_lost = False
+                free = self._window() - len(self.futures)
+                if not self.stopped and (free >= self._window() // 8 or self.has_rest):
+                    self.has_rest = False
                     self._submit(free)
             except KeyboardInterrupt:
                 if self.stopped:
@@ -141,45 +140,67 @@ class Driver:
         if self.stopped:
             raise type(self.stopped)(f"{str(self.stopped).rstrip('.')}. {self.resume}")
 
+    def _window(self) -> int:
+        """Tasks that are with the scheduler at a time: its memory does not grow with the job."""
+        return max(200, 4 * self.workers)
+
     def _take_what_ended(self) -> bool:
-        """All of it; waits half a second for the first."""
-        try:
-            ended = [self.ended.get(timeout=0.5)]
-        except queue.Empty:
+        """All of it; waits half a second for the first. Many are looked at less often."""
+        until = time.monotonic() + 0.5
+        while True:
+            time.sleep(max(_LOOK_S, 1e-5 * len(self.futures)))
+            ended = [one for one in self.futures.values() if one[0].status != "pending"]
+            if ended or time.monotonic() > until:
+                break
+        if not ended or self._scheduler_is_gone():
             return False
-        while not self.ended.empty():
-            ended.append(self.ended.get())
-        for future in ended:
-            if self.futures.pop(future.key, None) is not None:  # else it was taken back
-                self._take(future)
+        for future, _ in ended:
+            del self.futures[future.key]
+        self._take(ended)
         return True
 
     def _submit(self, count: int) -> None:
-        indices = [index for _, index in zip(range(count), self.todo)]
-        if not indices or self._scheduler_is_gone():
+        """So many tasks."""
+        if self._scheduler_is_gone():
+            return
+        together = self.task_s / max(self._shard_s(), 1e-9)
+        tasks = [shards for _ in range(count) if (shards := self._shards_of_a_task(together))]
+        if not tasks:
             return
         # No two clients' tasks of one name: what a second one asks for is its own.
         self.submits += 1
-        keys = [f"umov-{self.result.lock['key']}-{index}-{os.getpid()}-{self.submits}" for index in indices]
-        same = [[one] * len(indices) for one in self.arguments]
-        for future in self.cluster.client.map(self.do, indices, *same, pure=False, key=keys):
-            self.futures[future.key] = future
-            future.add_done_callback(self.ended.put)
+        keys = [f"umov-{self.result.lock['key']}-{shards[0]}-{os.getpid()}-{self.submits}" for shards in tasks]
+        futures = self.cluster.client.map(self.do, [json.dumps(shards) for shards in tasks], pure=False, key=keys,
+                                          program=self.result._umov, place=str(self.result.folder), threads=self.threads,
+                                          timeout_s=self.timeout_s, memory_mb=self.memory_mb, at_most_s=3 * self.task_s)
+        self.futures.update((future.key, (future, shards)) for future, shards in zip(futures, tasks))
 
-    def _take(self, future: Any) -> None:
-        if self._scheduler_is_gone():
-            return
-        if future.status == "lost" and not self.stopped:  # a worker was killed with the record in its hands: the shard may be there
-            self._ask_again(future)
-            return
-        if future.status != "finished":
-            why = future.exception() if future.status == "error" else future.status
-            self._stop(DeviceError(f"Dask lost a shard ({why})"))
-            return
-        record = self._record(future)
-        if record is None:
-            return
-        future.release()
+    def _shards_of_a_task(self, together: float) -> list[int]:
+        """So many, or fewer towards the end: each worker has several tasks before it."""
+        count = max(1, int(min(together, self.waiting / (4 * max(1, self.workers)))))
+        shards = list(itertools.islice(self.todo, count))
+        self.waiting -= len(shards)
+        return shards
+
+    def _take(self, ended: list[tuple[Any, list[int]]]) -> None:
+        finished = []
+        for future, shards in ended:
+            if future.status == "finished":
+                finished.append((future, shards))
+            elif future.status == "lost":  # a worker was killed with the records in its hands: the shards may be there
+                self._ask_again(shards)
+            else:
+                why = future.exception() if future.status == "error" else future.status
+                self._stop(DeviceError(f"Dask lost a shard ({why})"))
+        records = self._records([future for future, _ in finished])
+        for future, shards in finished:
+            future.release()
+            for index in shards:
+                if index in records:
+                    self._take_record(records[index])
+            self._ask_again([index for index in shards if index not in records])
+
+    def _take_record(self, record: dict[str, Any]) -> None:
         self.known = set()
         self.lost = 0
         if record["status"] in ("done", "there"):
@@ -199,23 +220,25 @@ class Driver:
                 self._stop(DeviceError(f"{self.exhausted} attempts ran out of memory one after the other, and no shard was done: "
                                        f"{record['message']}"))
 
-    def _ask_again(self, future: Any) -> None:
-        self.todo = itertools.chain([int(future.key.split("-")[2])], self.todo)
-        self.has_lost = True
+    def _ask_again(self, shards: list[int]) -> None:
+        if shards:
+            self.todo = itertools.chain(shards, self.todo)
+            self.waiting += len(shards)
+            self.has_rest = True
 
-    def _record(self, future: Any) -> dict[str, Any] | None:
-        """What the task told, or None where that was cut off on its way: by the end of the scheduler, which its client notices a
-        moment later, or of a worker."""
+    def _records(self, futures: list[Any]) -> dict[int, dict[str, Any]]:
+        """What the tasks told, by the shard; nothing of those that were cut off on their way: by the end of the scheduler, which
+        its client notices a moment later, or of a worker."""
+        if not futures:
+            return {}
         try:
-            record: dict[str, Any] = future.result()
-            return record
+            return {record["index"]: record for told in self.cluster.client.gather(futures, errors="skip") for record in told}
         except OSError:  # CommClosedError
             for _ in range(20):
                 if self._scheduler_is_gone():
-                    return None
+                    break
                 time.sleep(0.05)
-            self._ask_again(future)
-            return None
+            return {}
 
     def _tell_failed(self, record: dict[str, Any]) -> None:
         lock, index = self.result.lock, record["index"]
@@ -233,7 +256,7 @@ class Driver:
             return
         try:
             running = {key for keys in self.cluster.client.processing().values() for key in keys}
-            waiting = [future for key, future in self.futures.items() if key not in running]
+            waiting = [future for key, (future, _) in self.futures.items() if key not in running]
             for future in waiting:
                 del self.futures[future.key]
             self.cluster.client.cancel(waiting)
@@ -259,6 +282,7 @@ class Driver:
         workers = self.cluster.workers()
         self.lost += len(self.known - workers)
         self.known = workers
+        self.workers = max(self.workers, len(workers))
         if self.lost == _LOSSES:
             predicted = self.result.lock["predicted"]["cpu_s"] * self.result.lock["per_shard"]
             print(f"{_LOSSES} workers were lost without a shard done between them: a shard takes about "
@@ -271,13 +295,16 @@ class Driver:
 
     def seconds_left(self, workers: int) -> float:
         """From what the later half of the shards have taken; by the prediction until there is one, with what comes before the
-        first. Of those in hand half is done, one for each worker."""
+        first. Of those in hand half is done, a task of each worker."""
         workers = max(1, workers)
-        lately = self.seconds[len(self.seconds) // 2:]
-        shard_s = sum(lately) / len(lately) if lately else self.predicted_s
         rest = self.left - self.done - self.failed
         before = max(0.0, self.first_s - (time.monotonic() - self.began)) if not self.done else 0.0
-        return before + max(0.0, rest - min(workers, rest) / 2) * shard_s / workers
+        in_hand = min(workers * max(1.0, self.task_s / max(self._shard_s(), 1e-9)), rest)
+        return before + (rest - in_hand / 2) * self._shard_s() / workers
+
+    def _shard_s(self) -> float:
+        lately = self.seconds[len(self.seconds) // 2:]
+        return sum(lately) / len(lately) if lately else self.predicted_s
 
 
 class Hold:

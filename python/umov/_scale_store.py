@@ -245,3 +245,17 @@ def do_shard_of_store(index: int, program: str, url: str, threads: int, timeout_
         return record
     except (Error, OSError) as problem:
         return {"index": index, "status": "failed", "code": 6, "message": str(problem)}
+
+
+def do_shards(indices: str, *, program: str, place: str, threads: int, timeout_s: float, memory_mb: int | None,
+              at_most_s: float) -> list[dict[str, Any]]:
+    """Shards one after the other, in a Dask worker, until one could not be done or so many seconds are over: the record of each that
+    was begun; the others are for whoever has time. `indices`: their numbers as JSON, which Dask does not look through."""
+    do = do_shard_of_store if is_url(place) else do_shard
+    until = time.monotonic() + at_most_s
+    records: list[dict[str, Any]] = []
+    for index in json.loads(indices):
+        records.append(do(index, program, place, threads, timeout_s, memory_mb))
+        if records[-1]["status"] not in ("done", "there") or time.monotonic() > until:
+            break
+    return records

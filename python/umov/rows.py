@@ -100,25 +100,31 @@ class Rows:
         files, numbers, _ = self._blocks
         return self._read(int(files[number]), int(numbers[number]), column)
 
-    def _read(self, file: int, block: int, column: str) -> Any:
+    def _cells(self, file: int, block: int, column: str) -> tuple[Any, dict[str, int]]:
+        """As they stand in the file, mapped: texts by their numbers; and where that is."""
         if column not in self._kinds:
             raise UsageError(f"column {column}: there are {', '.join(self.columns)}")
         about = self._head(file)["blocks"][block]
         place, rows = about["columns"][self.columns.index(column)], about["rows"]
-        kind = self._kinds[column]
+        kind = _TYPES[self._kinds[column]]
         if rows == 0:
-            return np.empty(0, dtype=object if kind == "text" else _TYPES[kind])
-        values = np.memmap(self.files[file], dtype=_TYPES[kind], mode="r", offset=place["at"], shape=(rows,))
-        if kind == "bool":
-            return values.view(np.bool_)
-        return self._texts(file, place)[values] if kind == "text" else values
+            return np.empty(0, dtype=kind), place
+        return np.memmap(self.files[file], dtype=kind, mode="r", offset=place["at"], shape=(rows,)), place
 
-    def _texts(self, file: int, place: dict[str, int]) -> Any:
+    def _read(self, file: int, block: int, column: str) -> Any:
+        values, place = self._cells(file, block, column)
+        kind = self._kinds[column]
+        if kind == "text":
+            return np.array(self._texts(file, place) if len(values) else [], dtype=object)[values]
+        return values.view(np.bool_) if kind == "bool" else values
+
+    def _texts(self, file: int, place: dict[str, int]) -> list[str]:
+        """Those that differ, by their numbers."""
         ends = np.memmap(self.files[file], dtype="<u8", mode="r", offset=place["ends"], shape=(place["texts"],))
         words = bytes(np.memmap(self.files[file], dtype="u1", mode="r", offset=place["words"],
                                 shape=(int(ends[-1]),))) if ends[-1] else b""
         begins = np.concatenate([[0], ends[:-1]]).astype(int)
-        return np.array([words[a:int(b)].decode() for a, b in zip(begins, ends)], dtype=object)
+        return [words[a:int(b)].decode() for a, b in zip(begins, ends)]
 
     def __getitem__(self, column: str) -> Any:
         """A whole column in memory."""
@@ -169,15 +175,18 @@ class Rows:
                 yield {name: self._read(file, block, name) for name in columns or self.columns}
 
     def to_arrow(self) -> Any:
-        """All rows as a pyarrow table; texts as dictionaries, units in the fields."""
+        """All rows as a pyarrow table, with units in the fields."""
         import pyarrow as pa
-        fields, batches = [], []
-        for name in self.columns:
-            kind = {"float64": pa.float64(), "int64": pa.int64(), "bool": pa.bool_(),
-                    "text": pa.string()}[self._kinds[name]]
-            fields.append(pa.field(name, kind, metadata={"unit": self.units[name]}))
-        schema = pa.schema(fields)
-        for block in self.blocks():
-            batches.append(pa.record_batch([pa.array(block[name], type=schema.field(name).type)
-                                            for name in self.columns], schema=schema))
+        kinds = {"float64": pa.float64(), "int64": pa.int64(), "bool": pa.bool_(), "text": pa.string()}
+        schema = pa.schema([pa.field(name, kinds[self._kinds[name]], metadata={"unit": self.units[name]}) for name in self.columns])
+        batches = [pa.record_batch([self._arrow(file, block, name) for name in self.columns], schema=schema)
+                   for file in range(len(self.files)) for block in range(len(self._head(file)["blocks"]))]
         return pa.Table.from_batches(batches, schema=schema)
+
+    def _arrow(self, file: int, block: int, column: str) -> Any:
+        import pyarrow as pa
+        if self._kinds[column] != "text":
+            return pa.array(self._read(file, block, column))
+        values, place = self._cells(file, block, column)  # no object of Python for each row
+        texts = self._texts(file, place) if len(values) else []
+        return pa.DictionaryArray.from_arrays(pa.array(values), pa.array(texts, pa.string())).cast(pa.string())

@@ -84,7 +84,8 @@ class Plan:
     once_cpu_s: float  #: of the whole job: masks, which all processes read
 
 
-def plan(job: Job, *, cores: int | None = None, reduce: str | Sequence[str] = (), program: str | None = None) -> Plan:
+def plan(job: Job, *, cores: int | None = None, reduce: str | Sequence[str] = (), isa: str | None = None,
+         program: str | None = None) -> Plan:
     """What a job will cost; nothing is written.
 
     Parameters
@@ -93,7 +94,7 @@ def plan(job: Job, *, cores: int | None = None, reduce: str | Sequence[str] = ()
         What is to be done.
     cores
         That will be at work; by default those of this machine.
-    reduce
+    reduce, isa
         As in `run`.
     program
         The command umov; by default the one beside this package.
@@ -103,7 +104,7 @@ def plan(job: Job, *, cores: int | None = None, reduce: str | Sequence[str] = ()
     >>> umov.scale.plan(umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=1000, phase=60)).shards
     1
     """
-    more = [*(["--cores", cores] if cores else []), *_reduce_words(reduce)]
+    more = [*(["--cores", cores] if cores else []), *_isa_words(isa), *_reduce_words(reduce)]
     return Plan(**json.loads(call(find_program(program), "plan", "--json", "-q", *more, "not-made", *job.words)))
 
 
@@ -278,10 +279,16 @@ class Result:
             if target.exists():
                 continue
             growing = out / f".{file.stem}.{os.getpid()}.part"
-            pq.write_table(Rows([file], table or self.lock["tables"][0]).to_arrow(), growing, compression="zstd",
-                           compression_level=1)
+            rows = Rows([file], table or self.lock["tables"][0]).to_arrow()
+            # Numbers that all differ are sought in a dictionary at four times the cost of writing them.
+            texts = [name for name in rows.column_names if str(rows.schema.field(name).type) == "string"]
+            pq.write_table(rows, growing, compression="zstd", compression_level=1, use_dictionary=texts)
             growing.replace(target)
         return ds.dataset(out, format="parquet")
+
+
+def _isa_words(isa: str | None) -> list[str]:
+    return ["--isa", isa] if isa else []
 
 
 def _reduce_words(reduce: str | Sequence[str]) -> list[str]:
@@ -289,7 +296,7 @@ def _reduce_words(reduce: str | Sequence[str]) -> list[str]:
 
 
 def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None, reduce: str | Sequence[str] = (),
-        per_shard: int | None = None,
+        per_shard: int | None = None, isa: str | None = None,
         threads: int = 1, timeout_s: float | None = None, memory_mb: int | None = None, join: bool = False,
         yes: bool = False, tls: bool = True,
         quiet: bool = True, program: str | None = None) -> Result:
@@ -308,10 +315,14 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     reduce
         What is kept in place of the rows where these are made faster than they can be stored, each a table of the result:
         "histogram:COLUMN:LOW:HIGH:BINS" (LOW belongs to the first bin, HIGH to none), "log-histogram:..." (bins of one
-        ratio), "most:COLUMN:COUNT" or "least:COLUMN:COUNT" (whole rows). Of each band, or of each value of the columns in
+        ratio), "most:COLUMN:COUNT" or "least:COLUMN:COUNT" (whole rows), "likelihood:COLUMN+COLUMN:VALUE+VALUE:ERROR+ERROR"
+        (how likely measured values are if each row is as likely as any other). Of each band, or of each value of the columns in
         ":BY+BY" behind it. Its table is "log_histogram_intensity" and so on.
     per_shard
         Poses, objects, passes, exposures or curves of a shard; by default what takes 10 to 120 s.
+    isa
+        "avx512", "avx2", "sse4" or "baseline": an instruction set that all machines have, for the same bytes on unlike ones; by
+        default the best of this one.
     threads
         Of each worker of a cluster.
     timeout_s
@@ -355,7 +366,7 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     memory_mb = None if memory_mb is None else whole_between(memory_mb, "memory_mb", 64, 1_000_000_000)
     if is_url(output) and cluster is None:
         raise UsageError(f"output is {output}; an object store takes a cluster: cluster=\"local:{os.cpu_count()}\" is this machine")
-    more = [*(["--per-shard", per_shard] if per_shard else []), *(["--yes"] if yes else []), *_reduce_words(reduce)]
+    more = [*(["--per-shard", per_shard] if per_shard else []), *_isa_words(isa), *(["--yes"] if yes else []), *_reduce_words(reduce)]
     if cluster is None:
         call_for_rows(umov, "run", "-q", *more, *(["--timeout-s", timeout_s] if timeout_s else []),
                       *(["--memory-mb", memory_mb] if memory_mb else []),
@@ -367,7 +378,7 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
         call(umov, "lock", "-q", *more, output, *words)
     result = Result(output, umov)
     if not words:
-        _refuse_others(reduce, result)
+        _refuse_others(result, reduce, per_shard, isa)
     if result.missing:
         _do_missing(result, cluster, threads, timeout_s, join, tls, quiet, memory_mb)
     if result._store is None and not result.missing:  # of a store, `merge` tells
@@ -375,12 +386,18 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     return result
 
 
-def _refuse_others(reduce: str | Sequence[str], result: Result) -> None:
-    """What the folder of a job does not keep: the command refuses it with the same words."""
-    given, kept = _reduce_words(reduce)[1::2], result.lock.get("reduce", [])
-    if given and given != kept:
-        raise UsageError(f"reduce is {', '.join(given)}; {result.folder} keeps {', '.join(kept) or 'all rows'}. What a job keeps "
-                         "is said when it is begun: leave it out, or begin another in a new folder")
+def _refuse_others(result: Result, reduce: str | Sequence[str], per_shard: int | None, isa: str | None) -> None:
+    """What is not that of the job of the folder: the command refuses it with the same words."""
+    lock = result.lock
+    given, kept, held = _reduce_words(reduce)[1::2], lock.get("reduce", []), lock["instruction_set"]
+    for is_other, asked, there in (
+            (per_shard and min(per_shard, lock["total"]) != lock["per_shard"], f"per_shard is {per_shard}",
+             f"has {lock['per_shard']} {lock['unit']} in a shard"),
+            (isa and isa != held, f"isa is {isa}", f"is held to {held or 'no instruction set'}"),
+            (given and given != kept, f"reduce is {', '.join(given)}", f"keeps {', '.join(kept) or 'all rows'}")):
+        if is_other:
+            raise UsageError(f"{asked}; the job of {result.folder} {there}, as was said when it was begun. Leave it out, or begin another "
+                             "in a new folder")
 
 
 def _do_missing(result: Result, cluster: Any, threads: int, timeout_s: float | None, join: bool, tls: bool, quiet: bool,
