@@ -121,6 +121,8 @@ def test_rows_are_opened_lazily(scene):
     dataset = result.to_parquet("parquet")
     assert dataset.count_rows() == 300
     assert dataset.to_table(columns=["intensity"])["intensity"].to_pylist() == plain
+    assert dataset.to_table(columns=["band"])["band"].to_pylist() == rows["band"].tolist() == [line.split(",")[1] for line in lines[1:]]
+    assert str(dataset.schema.field("band").type) == "string" and dataset.schema.field("intensity").metadata[b"unit"] == b"m2 / sr"
 
 
 def test_workers_that_are_killed_cost_no_byte(scene):
@@ -334,7 +336,9 @@ def test_time_left_begins_with_what_comes_before_the_first_shard(scene):
     driver, _ = driver_of(scene, lambda index, turn: record(index))
     driver.first_s, driver.predicted_s = 30.0, 2.0
     assert driver.seconds_left(1) == pytest.approx(30 + 19.5 * 2, abs=1)
-    driver.done = 1
+    driver.began -= 64  # twice what the first should have taken: all takes twice as long
+    assert driver.seconds_left(1) == pytest.approx(19.5 * 4, abs=1)
+    driver.done, driver.first_took_s = 1, 32.0
     assert driver.seconds_left(1) == pytest.approx(18.5 * 2)
 
 

@@ -111,6 +111,7 @@ class Driver:
         self.failed_before = result._names_of_failed()
         self.done = self.failed = self.lost = self.exhausted = 0
         self.seconds: list[float] = []
+        self.first_took_s = 0.0  # the first that was told
         self.first_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) / threads
         self.predicted_s = predicted["cpu_s"] * lock["per_shard"] / threads
         self.known: set[str] = set()
@@ -204,6 +205,7 @@ class Driver:
         self.known = set()
         self.lost = 0
         if record["status"] in ("done", "there"):
+            self.first_took_s = self.first_took_s or time.monotonic() - self.began
             self.done += 1
             if (name := f"{record['index']:08d}.json") in self.failed_before:
                 self.result._forget_failed(name)
@@ -298,13 +300,18 @@ class Driver:
         first. Of those in hand half is done, a task of each worker."""
         workers = max(1, workers)
         rest = self.left - self.done - self.failed
-        before = max(0.0, self.first_s - (time.monotonic() - self.began)) if not self.done else 0.0
+        before = max(0.0, self._slower() * self.first_s - (time.monotonic() - self.began)) if not self.done else 0.0
         in_hand = min(workers * max(1.0, self.task_s / max(self._shard_s(), 1e-9)), rest)
         return before + (rest - in_hand / 2) * self._shard_s() / workers
 
     def _shard_s(self) -> float:
         lately = self.seconds[len(self.seconds) // 2:]
-        return sum(lately) / len(lately) if lately else self.predicted_s
+        return sum(lately) / len(lately) if lately else self._slower() * self.predicted_s
+
+    def _slower(self) -> float:
+        """Than predicted, by the first shard: other work may have a share of the machine."""
+        took = self.first_took_s or time.monotonic() - self.began
+        return max(1.0, took / max(self.first_s + self.predicted_s, 1e-9))
 
 
 class Hold:

@@ -94,7 +94,9 @@ def plan(job: Job, *, cores: int | None = None, reduce: str | Sequence[str] = ()
         What is to be done.
     cores
         That will be at work; by default those of this machine.
-    reduce, isa
+    reduce
+        As in `run`.
+    isa
         As in `run`.
     program
         The command umov; by default the one beside this package.

@@ -7,8 +7,9 @@
 
 namespace umov::scale {
 
-/// Clock of the shards. What was predicted holds until the first one is done; then the later half
-/// of those that are: the first ones learn masks, and machines get busier or idler.
+/// Clock of the shards. What was predicted holds until the first one is done, drawn out by what it
+/// takes longer, as other work may have a share of the machine; then the later half of those that
+/// are: the first ones learn masks, and machines get busier or idler.
 class TimeLeft {
 public:
   /// `unit_s`: predicted for a pose, an object ... ; `first_s`: for all that comes before the
@@ -27,6 +28,7 @@ private:
     double units, seconds;
   };
   double unit_s_, first_s_;
+  double slower_ = 1; ///< than predicted, by first shards
   bool is_first_over_ = false;
   std::vector<Sum> sums_{{0, 0}}; ///< of all shards up to each
 };

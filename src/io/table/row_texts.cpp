@@ -63,8 +63,7 @@ bool same_bits(const Numbers &numbers, std::size_t a, std::size_t b) {
 class CellTexts {
 public:
   CellTexts(const Table &table, const Column &column, TextForm form)
-      : table_(table), column_(column), form_(form),
-        numbers_(std::get_if<Numbers>(&column.cells)) {
+      : table_(table), column_(column), form_(form), numbers_(std::get_if<Numbers>(&column.cells)) {
     if (form == TextForm::Csv && column.precision != Precision{})
       precision_ = &column.precision;
     if (precision_ != nullptr && !precision_->error.empty())
@@ -130,9 +129,8 @@ private:
       digits = std::clamp(first - last + 1, 2, precision_->error.empty() ? 16 : 10);
     }
     char text[40];
-    const char *end = std::to_chars(text, std::end(text), value, std::chars_format::scientific,
-                                    digits - 1)
-                          .ptr;
+    const char *end =
+        std::to_chars(text, std::end(text), value, std::chars_format::scientific, digits - 1).ptr;
     double out = value;
     std::from_chars(text, end, out);
     return out;
@@ -171,8 +169,7 @@ void append_rows(const Table &table, std::size_t begin, std::size_t end, TextFor
   }
 }
 
-Result<void> write_rows(FileInProgress &file, const Table &table, TextForm form,
-                        unsigned threads) {
+Result<void> write_rows(FileInProgress &file, const Table &table, TextForm form, unsigned threads) {
   constexpr std::size_t rows_per_task = 4096;
   const std::size_t at_once = resolve_threads(threads);
   std::vector<std::string> texts(at_once);

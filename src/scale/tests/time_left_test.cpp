@@ -12,6 +12,9 @@ TEST(TimeLefts, AreWhatWasPredictedUntilAShardIsDone) {
   const std::vector<std::size_t> in_hand{100, 100};
   EXPECT_NEAR(clock.left_s(1000, in_hand, std::vector<double>{0, 0}), 53, 1e-9);
   EXPECT_NEAR(clock.left_s(1000, in_hand, std::vector<double>{5, 5}), 48, 1e-9);
+  // 13 s were predicted for the first: who is at it for 26 has half of the machine at most, and all
+  // takes twice as long: (200 + 2 6 - 26 - 20) / 2.
+  EXPECT_NEAR(clock.left_s(1000, in_hand, std::vector<double>{26, 20}), 83, 1e-9);
 }
 
 TEST(TimeLefts, FollowWhatShardsTakeLately) {
@@ -31,8 +34,9 @@ TEST(TimeLefts, LeaveOutFirstShardsThatLearnMuch) {
     clock->took(100, 50, true);
   const std::vector<std::size_t> in_hand{100};
   EXPECT_NEAR(rays.left_s(100, in_hand, std::vector<double>{0}), 50, 1e-9);
-  // Masks are there, and nothing is known yet of what the others take: 200 times .1 s.
-  EXPECT_NEAR(masks.left_s(200, in_hand, std::vector<double>{0}), 20, 1e-9);
+  // Masks are there, and nothing is known yet of what the others take: 200 times .1 s, by 50 s in
+  // place of the 40 that the first one should have taken.
+  EXPECT_NEAR(masks.left_s(200, in_hand, std::vector<double>{0}), 25, 1e-9);
   masks.took(100, 12);
   EXPECT_NEAR(masks.left_s(200, in_hand, std::vector<double>{0}), 24, 1e-9);
 }
