@@ -53,7 +53,7 @@ def merged_bytes(result):
     return pathlib.Path("merged.csv").read_bytes()
 
 
-@pytest.mark.parametrize("cluster", [None, "local:1", "local:2"])
+@pytest.mark.parametrize("cluster", [None, "local:1", "local:2", "local:4"])
 def test_clusters_give_the_plain_bytes(scene, cluster):
     job = job_of(scene)
     result = umov.scale.run(job, "out", cluster=cluster, per_shard=60)
