@@ -2,10 +2,9 @@
 #include "scale/grouped_reducer.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
+#include <vector>
 
 namespace umov::scale {
 namespace {

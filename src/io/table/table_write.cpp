@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <umov/core/text.h>
 
 namespace umov {
 
