@@ -170,8 +170,8 @@ void append_rows(const Table &table, std::size_t begin, std::size_t end, TextFor
 }
 
 Result<void> write_rows(FileInProgress &file, const Table &table, TextForm form, unsigned threads) {
-  constexpr std::size_t rows_per_task = 4096;
-  const std::size_t at_once = resolve_threads(threads);
+  const std::size_t tasks = (table.rows() + rows_per_task - 1) / rows_per_task;
+  const std::size_t at_once = std::min<std::size_t>(resolve_threads(threads), tasks);
   std::vector<std::string> texts(at_once);
   for (std::size_t first = 0; first < table.rows(); first += at_once * rows_per_task) {
     parallel_for(at_once, threads, [&](std::size_t k) {

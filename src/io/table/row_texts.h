@@ -1,11 +1,15 @@
 #pragma once
 // Private: rows of a table as lines of text.
 
+#include <cstddef>
 #include <string>
 #include <umov/core/files.h>
 #include <umov/io/table.h>
 
 namespace umov {
+
+/// Rows that one thread turns into bytes at a time.
+inline constexpr std::size_t rows_per_task = 4096;
 
 /// RFC 4180 with the precision of the columns, or blank-separated with all digits.
 enum class TextForm { Csv, Ecsv };

@@ -9,13 +9,6 @@
 #include <umov/core/parallel.h>
 
 namespace umov {
-namespace {
-
-/// Rows that one thread turns into bytes at a time.
-constexpr std::size_t rows_per_task = 4096;
-
-} // namespace
-
 struct TableStream::Writer {
   FileInProgress file;
   std::optional<FitsTable> fits; ///< absent: CSV
