@@ -72,8 +72,9 @@ void add_scale_job(CLI::App &scale, ScaleJobOptions &o) {
       .add_option(
           "--reduce", o.reductions,
           "Keep this in place of the rows: histogram:COLUMN:LOW:HIGH:BINS, log-histogram:..., "
-          "most:COLUMN:COUNT, least:COLUMN:COUNT, likelihood:COLUMN:VALUE:ERROR; of each band, or "
-          "of each value of the columns in :BY+BY behind it. May be given several times")
+          "most:COLUMN:COUNT, least:COLUMN:COUNT, likelihood:COLUMN:VALUE:ERROR or "
+          "likelihood:COLUMN+COLUMN:VALUE+VALUE:ERROR+ERROR; of each band, or of each value of the "
+          "columns in :BY+BY behind it. May be given several times")
       ->take_all()
       ->allow_extra_args(false);
   scale.add_flag("--yes", o.may_cost_much, "Begin also above 100 core-h or 100 GB");

@@ -14,13 +14,20 @@ namespace {
 constexpr int mantissa_bits = 53;
 /// 2^63 summands of 2^-200 are less than 2^-136 of the highest.
 constexpr std::int64_t seen_powers = 200;
-constexpr double least_power = -1e12;
+/// Above those of all x from `least` on. Zeros stand here, until they cannot be seen beside others.
+constexpr std::int64_t power_of_zero = std::int64_t{1} << 42;
+/// Of what can be counted, so that sums of a thousand such do not wrap.
+constexpr std::uint64_t most_high = std::uint64_t{1} << 53;
 
 } // namespace
 
 void ExactSum::add_exp(double x) {
-  if (!(x > least_power && x < -least_power))
+  if (std::isnan(x))
     return;
+  if (x < least) {
+    add(power_of_zero, {});
+    return;
+  }
   const double power = std::ceil(-x / std::numbers::ln2);
   const double part = std::exp(x + power * std::numbers::ln2); // from 1 to 2
   add(static_cast<std::int64_t>(power),
@@ -68,7 +75,8 @@ bool ExactSum::add(const std::string &text) {
     std::int64_t power = 0;
     Whole whole;
     if (!number(power, ' ') || !number(whole.high, ' ') || !number(whole.low, ';') ||
-        whole.low >> mantissa_bits != 0)
+        whole.low >> mantissa_bits != 0 || whole.high > most_high || power < 0 ||
+        power > power_of_zero || (whole.high == 0 && whole.low == 0) != (power == power_of_zero))
       return false;
     add(power, whole);
   }

@@ -7,16 +7,18 @@
 
 namespace umov::scale {
 
-/// Sum of exp(x), each rounded once to 52 bits behind its first: whole numbers are added, one for
-/// each power of two, and no addition rounds. Powers so far below the highest that they cannot be
-/// seen in it are dropped.
+/// Sum of exp(x), x <= 0, each rounded once to 52 bits behind its first: whole numbers are added,
+/// one for each power of two, and no addition rounds. Powers so far below the highest that they
+/// cannot be seen in it are dropped.
 class ExactSum {
 public:
-  /// Nothing for what is not a number or too small to have a power.
+  /// Where a double holds x to 2e-4. What is less counts as a summand of 0.
+  static constexpr double least = -2e12;
+  /// Nothing for what is not a number.
   void add_exp(double x);
   /// What `text` gave; false for anything else.
   [[nodiscard]] bool add(const std::string &text);
-  /// Its natural logarithm; NaN of no summand.
+  /// Its natural logarithm; -infinity where all are 0, NaN of no summand.
   [[nodiscard]] double log() const;
   /// All of it; equal sums have equal texts.
   [[nodiscard]] std::string text() const;

@@ -76,7 +76,7 @@ private:
         of_group.push_back(begin->second);
       add(kept_[group], rows, keys, std::move(of_group));
     }
-    return all_kept_ > most_kept ? are_too_many() : Result<void>();
+    return all_kept_ > most_kept ? are_too_many(most_kept) : Result<void>();
   }
   [[nodiscard]] bool is_before(const Key &a, const Key &b) const {
     if (a.value == b.value)

@@ -41,11 +41,10 @@ std::vector<double> hidden(const Table &kept, const char *name) {
       column == nullptr ? nullptr : std::get_if<std::vector<double>>(&column->cells);
   return cells == nullptr ? std::vector<double>{} : *cells;
 }
-Table shown(const Table &kept) {
-  Table out = kept;
+Table shown(Table kept) {
   for (const char *name : {order_column, first_column, sum_column, squares_column})
-    out.remove(name);
-  return out;
+    kept.remove(name);
+  return kept;
 }
 
 Result<void> GroupedReducer::look_at(const Table &rows, std::span<const double> order) {
@@ -72,11 +71,11 @@ Result<void> GroupedReducer::is_none() const {
   return fail(ErrorCode::BadInput, "what was kept of a shard is no " + text_);
 }
 
-Result<void> GroupedReducer::are_too_many() const {
+Result<void> GroupedReducer::are_too_many(std::size_t most) const {
   return fail(ErrorCode::BadInput,
               fmt::format("--reduce {}: its table has more than {} rows, with {} values of {}; "
                           "fewer of each, or columns with fewer values behind it, were expected",
-                          printable(text_), most_kept, groups_.count(), groups_.names()));
+                          printable(text_), most, groups_.count(), groups_.names()));
 }
 
 void GroupedReducer::add_notes(Table &out) const {

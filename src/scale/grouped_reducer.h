@@ -24,7 +24,7 @@ inline constexpr const char *sum_column = "_sum", *squares_column = "_squares";
 /// The cells of such a column of numbers; none where there is none.
 std::vector<double> hidden(const Table &kept, const char *name);
 /// Without these columns.
-Table shown(const Table &kept);
+Table shown(Table kept);
 inline double order_at(std::span<const double> order, std::size_t row) {
   return order.empty() ? 0 : order[row];
 }
@@ -43,7 +43,8 @@ protected:
   Result<void> look_at(const Table &rows, std::span<const double> order);
   Result<void> count_rows_of(const Table &kept);
   [[nodiscard]] Result<void> is_none() const;
-  [[nodiscard]] Result<void> are_too_many() const;
+  /// Rows of its table, with so many expected at most.
+  [[nodiscard]] Result<void> are_too_many(std::size_t most) const;
   void add_notes(Table &out) const;
   const Wanted wanted_;
   const std::string text_;

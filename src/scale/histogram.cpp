@@ -20,7 +20,7 @@ public:
       if (auto *counts = counts_of(row, order_at(order, row)))
         ++(*counts)[bin_of(values[row])];
       else
-        return are_too_many();
+        return are_too_many(most_kept);
     return {};
   }
   Result<void> join(const Table &kept) override {
@@ -34,7 +34,7 @@ public:
     for (std::size_t row = 0; row < counts->size(); row += rows_of_group()) {
       auto *all = counts_of(row, order_at(first, row));
       if (all == nullptr)
-        return are_too_many();
+        return are_too_many(most_kept);
       for (std::size_t k = 0; k < all->size(); ++k)
         (*all)[k] += (*counts)[row + k];
     }

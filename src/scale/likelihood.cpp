@@ -2,12 +2,19 @@
 #include "scale/grouped_reducer.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 namespace umov::scale {
 namespace {
+
+/// A row farther off is in neither sum, so that none is of fewer rows than the other: 1.4 million
+/// standard deviations.
+constexpr double least_log = ExactSum::least / 2;
+/// They are of some kilobytes each.
+constexpr std::size_t most_groups = most_kept / 100;
 
 /// How likely the measured values are if each row is as likely as any other. Sums are exact, so
 /// that they do not depend on who added what to what.
@@ -30,10 +37,12 @@ public:
     for (std::size_t row = 0; row < logs.size(); ++row) {
       Sums *sums = sums_of(row, order_at(order, row));
       if (sums == nullptr)
-        return are_too_many();
+        return are_too_many(most_groups);
       ++sums->count;
-      sums->of_one.add_exp(logs[row]);
-      sums->of_squares.add_exp(2 * logs[row]);
+      const double log =
+          logs[row] < least_log ? -std::numeric_limits<double>::infinity() : logs[row];
+      sums->of_one.add_exp(log);
+      sums->of_squares.add_exp(2 * log);
     }
     return {};
   }
@@ -49,7 +58,7 @@ public:
     for (std::size_t row = 0; row < counts->size(); ++row) {
       Sums *sums = sums_of(row, order_at(first, row));
       if (sums == nullptr)
-        return are_too_many();
+        return are_too_many(most_groups);
       sums->count += (*counts)[row];
       if (!sums->of_one.add((*ones)[row]) || !sums->of_squares.add((*squares)[row]))
         return is_none();
@@ -78,10 +87,12 @@ public:
     out.add("count", "", "rows", std::move(counts));
     out.add("log_likelihood", "",
             "natural logarithm of the mean over the rows of the normal density of the measured "
-            "values, in their units; 0 of rows without a value; not defined: all are",
+            "values, in their units; 0 of rows without a value; not defined: all are; -inf: all "
+            "others are more than a million standard deviations off",
             std::move(likelihood));
     out.add("effective_rows", "",
-            "(sum of likelihoods)^2 / sum of their squares: on how many rows it rests",
+            "(sum of likelihoods)^2 / sum of their squares: on how many rows it rests; not "
+            "defined where all are 0",
             std::move(effective));
     out.add(sum_column, "", "exact sum of the likelihoods", std::move(ones));
     out.add(squares_column, "", "exact sum of their squares", std::move(squares));
@@ -110,7 +121,7 @@ private:
   Sums *sums_of(std::size_t row, double order) {
     const std::size_t group = groups_.of(row, order);
     if (group == sums_.size()) {
-      if (groups_.count() > most_kept / 100) // of some kilobytes each
+      if (groups_.count() > most_groups)
         return nullptr;
       sums_.emplace_back();
     }

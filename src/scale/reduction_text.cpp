@@ -9,6 +9,7 @@
 #include <set>
 #include <umov/core/text.h>
 #include <umov/scale/reduction.h>
+#include <utility>
 
 namespace umov::scale {
 namespace {
@@ -51,6 +52,17 @@ namespace {
 
 using Words = std::vector<std::string>;
 
+/// At each + but that of an exponent.
+Words split_numbers(const std::string &text) {
+  Words out;
+  for (std::string &word : split(text, '+'))
+    if (!out.empty() && (out.back().ends_with('e') || out.back().ends_with('E')))
+      out.back() += '+' + word;
+    else
+      out.push_back(std::move(word));
+  return out;
+}
+
 /// Nothing where all is well, else what is wrong.
 std::string read_bins(const Words &words, Wanted &out) {
   const auto low = parse_number(words[2]), high = parse_number(words[3]);
@@ -72,8 +84,8 @@ std::string read_count(const std::string &word, std::size_t most, Wanted &out) {
 }
 
 std::string read_measured(const Words &words, Wanted &out) {
-  const Words columns = split(words[1], '+'), values = split(words[2], '+'),
-              errors = split(words[3], '+');
+  const Words columns = split(words[1], '+'), values = split_numbers(words[2]),
+              errors = split_numbers(words[3]);
   if (values.size() != columns.size() || errors.size() != columns.size())
     return "a value and an error of each column";
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -91,8 +103,10 @@ Result<Wanted> read_wanted(const std::string &text) {
   const auto refuse = [&text](const std::string &why) {
     return fail(ErrorCode::Usage,
                 fmt::format("--reduce {}: {}. Expected: histogram:COLUMN:LOW:HIGH:BINS, the same "
-                            "with log-histogram, most:COLUMN:COUNT, least:COLUMN:COUNT or "
-                            "likelihood:COLUMN:VALUE:ERROR, and :COLUMN behind it for one of each "
+                            "with log-histogram, most:COLUMN:COUNT, least:COLUMN:COUNT, "
+                            "likelihood:COLUMN:VALUE:ERROR or, of several in one row, "
+                            "likelihood:COLUMN+COLUMN:VALUE+VALUE:ERROR+ERROR, and :COLUMN behind "
+                            "it for one of each "
                             "of its values; such as log-histogram:intensity:1e-6:100:80",
                             printable(text), why));
   };

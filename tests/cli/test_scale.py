@@ -519,7 +519,7 @@ def test_passes_without_what_is_asked_for_are_passes(umov, tmp_path):
 @pytest.mark.parametrize("text,said", [
     ("mean:intensity", "no such reduction"), ("histogram:intensity:1:0:5", "LOW < HIGH"), ("histogram:intensity:-1e308:1e308:4", "too far apart"), ("log-histogram:intensity:0:1:5", "0 < LOW < HIGH"),
     ("histogram:intensity:0:1", "a number of bins"), ("most:intensity:0", "from 1 to a million"), ("most:brightness:5", "there are pose, band"),
-    ("likelihood:intensity:1:0", "an ERROR above 0"), ("likelihood:q_scat+u_scat:0:1", "of each column"), ("likelihood:band:1:1", "no column of numbers"),
+    ("likelihood:intensity:1:0", "an ERROR above 0"), ("likelihood:intensity:1e+1:1:band:band", "likelihood:COLUMN+COLUMN:VALUE+VALUE:ERROR+ERROR"), ("likelihood:q_scat+u_scat:0:1", "of each column"), ("likelihood:band:1:1", "no column of numbers"),
     ("most:band:5", "no column of numbers"), ("most:intensity:5:sun_x", "whole numbers was expected"),
 ])
 def test_reductions_that_are_none_are_refused_before_anything_is_made(umov, scenario, tmp_path, text, said):

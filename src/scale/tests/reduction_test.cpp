@@ -235,6 +235,51 @@ TEST(Reductions, OfTwoMeasuredValuesAreOfBothInARow) {
   EXPECT_TRUE(std::isnan(none.number("log_likelihood", 0)));
 }
 
+TEST(Reductions, OfRowsThatAreAllTooFarOffAreMinusInfinity) {
+  // Two rows 5 million standard deviations off, one without a value; with a near one it alone.
+  const std::string text = "likelihood:intensity:6:1e-6";
+  const std::vector<std::string> bands(4, "V");
+  for (const std::size_t cut : {0, 1, 2, 3}) {
+    const Table far = kept(text, rows({1, nan, 1}, {"V", "V", "V"}), std::min<std::size_t>(cut, 3));
+    EXPECT_EQ(far.number("log_likelihood", 0), -std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(std::isnan(far.number("effective_rows", 0)));
+    EXPECT_EQ(far.number("count", 0), 3);
+    const Table near = kept(text, rows({1, 6, nan, 1}, bands), cut);
+    // 1e-14: the logarithms of a quarter and of the area are rounded.
+    EXPECT_NEAR(near.number("log_likelihood", 0),
+                -std::log(4 * 1e-6 * std::sqrt(2 * std::acos(-1))), 1e-14);
+    EXPECT_EQ(near.number("effective_rows", 0), 1);
+  }
+}
+
+TEST(Reductions, RestOnRowsUpToAMillionStandardDeviationsOff) {
+  // Both rows alike: two, however far they are, as long as they count at all (exponent -7.2e11,
+  // whose square has twice that).
+  const Table table = kept("likelihood:intensity:1:1", rows({1'200'001, 1'200'001}, {"V", "V"}), 1);
+  EXPECT_NEAR(table.number("log_likelihood", 0), -7.2e11, 1);
+  // 1e-3: such exponents are doubles to 1e-4.
+  EXPECT_NEAR(table.number("effective_rows", 0), 2, 1e-3);
+}
+
+TEST(Reductions, ThatWouldBeOfTooManyGroupsSayOfHowMany) {
+  constexpr std::size_t count = 100'001;
+  const auto done =
+      (*make_reducer("likelihood:intensity:1:1:pose"))
+          ->take(rows(std::vector<double>(count, 1), std::vector<std::string>(count, "V")));
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("more than 100000 rows"), std::string::npos)
+      << done.error().message;
+}
+
+TEST(Reductions, HaveExponentsWithASign) {
+  Table two = rows({12, 20}, {"V", "V"});
+  two.add("q", "", "", std::vector<double>{0.1, 0.3});
+  EXPECT_EQ(kept("likelihood:intensity+q:1e+1+-1E+0:2e+0+1", two, 1).number("log_likelihood", 0),
+            kept("likelihood:intensity+q:10+-1:2+1", two, 1).number("log_likelihood", 0));
+  EXPECT_TRUE(make_reducer("likelihood:intensity:1e+1:1e+0"));
+  EXPECT_FALSE(make_reducer("likelihood:intensity:1e+:1"));
+}
+
 TEST(Reductions, OfWhatNoShardKeptAreRefused) {
   const std::string text = "likelihood:intensity:1:1";
   const auto reducer = make_reducer(text);
@@ -242,7 +287,8 @@ TEST(Reductions, OfWhatNoShardKeptAreRefused) {
   const auto other = make_reducer("histogram:intensity:0:1:2");
   ASSERT_TRUE((*other)->take(some_rows()));
   EXPECT_FALSE((*reducer)->join((*other)->kept()));
-  for (const char *sums : {"0 0", "a 0 1;", "0 0 18014398509481984;", "0 -1 1;"}) {
+  for (const char *sums : {"0 0", "a 0 1;", "0 0 18014398509481984;", "0 -1 1;", "0 0 0;",
+                           "9223372036854775807 0 1;", "-1 0 1;", "0 9007199254740993 0;"}) {
     const auto kept_by = make_reducer(text);
     ASSERT_TRUE((*kept_by)->take(some_rows()));
     Table bad = (*kept_by)->kept();
