@@ -33,7 +33,8 @@ class _Server:
             return ""
         if not select.select([self.process.stdout], [], [], timeout_s)[0]:
             return None
-        return self.process.stdout.readline().decode()
+        line = self.process.stdout.readline()
+        return line.decode() if line.endswith(b"\n") else ""  # half a record: it ended while it wrote
 
     def end(self, patience_s: float = 0.0) -> int:
         """Its exit code; negative for a signal. With patience it keeps its masks first."""
