@@ -255,6 +255,7 @@ class Played:
 
     def __init__(self, how):
         self.how, self.asked, self.tasks, self.status, self.client = how, [], [], "running", self
+        self.troubles = []  # of fetching records
 
     def workers(self):
         return {"one"}
@@ -280,7 +281,12 @@ class Played:
         is_lost = came[-1] == "lost"
         return types.SimpleNamespace(key=name, status="lost" if is_lost else "finished", came=came, release=lambda: None)
 
-    def gather(self, futures, errors):
+    def sync(self, function, callback_timeout):
+        if self.troubles:
+            raise self.troubles.pop()
+        return function()
+
+    def gather(self, futures, errors, asynchronous):
         return [future.came for future in futures]
 
 
@@ -336,10 +342,68 @@ def test_time_left_begins_with_what_comes_before_the_first_shard(scene):
     driver, _ = driver_of(scene, lambda index, turn: record(index))
     driver.first_s, driver.predicted_s = 30.0, 2.0
     assert driver.seconds_left(1) == pytest.approx(30 + 19.5 * 2, abs=1)
-    driver.began -= 64  # twice what the first should have taken: all takes twice as long
+    driver.since = time.monotonic() - 64  # twice what the first should have taken: all takes twice as long
     assert driver.seconds_left(1) == pytest.approx(19.5 * 4, abs=1)
     driver.done, driver.first_took_s = 1, 32.0
     assert driver.seconds_left(1) == pytest.approx(18.5 * 2)
+
+
+def test_time_in_a_queue_is_not_that_of_a_slow_machine(scene):
+    """Ten minutes without a worker say nothing of a shard, which then takes twice what was predicted: 64 s."""
+    driver, played = driver_of(scene, lambda index, turn: record(index))
+    driver.first_s, driver.predicted_s = 30.0, 2.0
+    there, workers, now = {"one"}, set(), time.monotonic
+    played.workers = lambda: workers
+    with pytest.MonkeyPatch.context() as patch:
+        driver._watch()
+        patch.setattr(time, "monotonic", lambda: now() + 600)
+        driver._watch()
+        assert driver.seconds_left(1) == pytest.approx(30 + 19.5 * 2, abs=1)
+        workers = there
+        patch.setattr(time, "monotonic", lambda: now() + 605)
+        driver._watch()
+        assert driver.seconds_left(1) == pytest.approx(30 + 19.5 * 2, abs=1)
+        driver._take_record({**record(0), "seconds": 64.0})
+        assert driver.seconds_left(1) == pytest.approx(18.5 * 4)
+
+
+def test_records_that_do_not_come_in_time_are_fetched_again(scene):
+    """Nothing is done a second time, and after Ctrl-C what was finished is told."""
+    driver, played = driver_of(scene, lambda index, turn: record(index))
+    played.troubles = [TimeoutError(), OSError(), TimeoutError()]
+    driver.run()
+    assert sorted(played.asked) == list(range(20)) and driver.done == 20
+    driver, played = driver_of(scene, lambda index, turn: record(index))
+    played.troubles = [KeyboardInterrupt()]
+    with pytest.raises(umov.Interrupted):
+        driver.run()
+    assert driver.done == len(played.asked) > 0
+
+
+def test_shards_are_asked_for_again_however_often(scene):
+    """A million times: what is left is found at once, and all of it."""
+    driver, _ = driver_of(scene, lambda index, turn: record(index))
+    driver.workers = 1
+    for _ in range(1_000_000):
+        driver._ask_again(driver._shards_of_a_task(1))
+    left = []
+    while shards := driver._shards_of_a_task(1):
+        left += shards
+    assert sorted(left) == list(range(20)) and driver.waiting == 0
+
+
+def test_half_a_record_is_that_of_a_process_that_ended(scene, tmp_path):
+    from umov import _scale_worker
+    subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "20", "out", *job_of(scene, 40).words], check=True)
+    flag = str(tmp_path / "was_here")
+    program = wrapper(tmp_path, f"if not os.path.exists({flag!r}): open({flag!r}, 'w'); "
+                                "os.write(1, b'half a record'); os.kill(os.getpid(), signal.SIGKILL)")
+    try:
+        told = _scale_worker.do_shard(1, program, "out", 1, 60)
+    finally:
+        _scale_worker._end_all()
+        _scale_worker._idle.clear()
+    assert (told["status"], told["attempts"]) == ("done", 2)
 
 
 def test_what_is_not_that_of_the_folder_is_refused(scene):

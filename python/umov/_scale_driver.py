@@ -1,6 +1,7 @@
 """Who does which shard of a job's folder on a Dask cluster, and what is told of it."""
 from __future__ import annotations
 
+import collections
 import importlib
 import itertools
 import json
@@ -25,6 +26,7 @@ SETTINGS = {"distributed.scheduler.allowed-failures": 1000, "distributed.schedul
 _PATIENCE_S = 30.0  # of shards in hand after Ctrl-C
 _EXHAUSTED = 10  # attempts without memory before the first shard is done, after which no other is made
 _LOSSES = 10  # of workers without a shard done between them, after which it is said that none will be
+_FETCH_S = 5.0  # of records of one batch, twice as long where that was too short: a worker may have died with some of them
 _LOOK_S = 0.05  # between two looks at what has ended: what is taken together costs the scheduler one message
 _TASK_S = 1.0  # a task costs two processes a millisecond each, however short it is: shards that are short share one
 
@@ -104,6 +106,7 @@ class Driver:
         self.do, self.task_s = do_shards, _TASK_S
         missing = result.missing
         self.todo: Iterator[int] = iter(missing)
+        self.again: collections.deque[int] = collections.deque()  # before those
         self.submits = self.workers = 0
         self.has_rest = False
         self.futures: dict[str, tuple[Any, list[int]]] = {}  # of each task, with its shards
@@ -111,18 +114,20 @@ class Driver:
         self.failed_before = result._names_of_failed()
         self.done = self.failed = self.lost = self.exhausted = 0
         self.seconds: list[float] = []
-        self.first_took_s = 0.0  # the first that was told
+        self.first_took_s = 0.0  # the longest of those before which much comes: masks
+        self.since: float | None = None  # there are workers
+        self.fetch_s = _FETCH_S
         self.first_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) / threads
         self.predicted_s = predicted["cpu_s"] * lock["per_shard"] / threads
         self.known: set[str] = set()
-        self.began = self.told = self.looked = time.monotonic()
+        self.told = self.looked = time.monotonic()
         self.stopped: Error | Interrupted | None = None
         self.stopped_at = 0.0
         self.resume = (f"umov.scale.run(None, \"{result.folder}\", cluster=...) goes on." if is_url(result.folder) else
                        f"umov scale run {result.folder} goes on.")
 
     def run(self) -> None:
-        self.workers = len(self.cluster.workers())
+        self._see_workers()
         self._submit(self._window())
         while self.futures:
             try:
@@ -150,15 +155,12 @@ class Driver:
         until = time.monotonic() + 0.5
         while True:
             time.sleep(max(_LOOK_S, 1e-5 * len(self.futures)))
-            ended = [one for one in self.futures.values() if one[0].status != "pending"]
+            ended = [(future, shards, status) for future, shards in self.futures.values() if (status := future.status) != "pending"]
             if ended or time.monotonic() > until:
                 break
         if not ended or self._scheduler_is_gone():
             return False
-        for future, _ in ended:
-            del self.futures[future.key]
-        self._take(ended)
-        return True
+        return self._take(ended)
 
     def _submit(self, count: int) -> None:
         """So many tasks."""
@@ -179,39 +181,50 @@ class Driver:
     def _shards_of_a_task(self, together: float) -> list[int]:
         """So many, or fewer towards the end: each worker has several tasks before it."""
         count = max(1, int(min(together, self.waiting / (4 * max(1, self.workers)))))
-        shards = list(itertools.islice(self.todo, count))
+        shards = [self.again.popleft() for _ in range(min(count, len(self.again)))]
+        shards += itertools.islice(self.todo, count - len(shards))
         self.waiting -= len(shards)
         return shards
 
-    def _take(self, ended: list[tuple[Any, list[int]]]) -> None:
+    def _take(self, ended: list[tuple[Any, list[int], str]]) -> bool:
+        """False: nothing came. What is finished is out of what is with the scheduler when its records are here, so that nothing is
+        done twice for Ctrl-C."""
         finished = []
-        for future, shards in ended:
-            if future.status == "finished":
+        for future, shards, status in ended:
+            if status == "finished":
                 finished.append((future, shards))
-            elif future.status == "lost":  # a worker was killed with the records in its hands: the shards may be there
+                continue
+            self.futures.pop(future.key, None)
+            if status == "lost":  # a worker was killed with the records in its hands: the shards may be there
                 self._ask_again(shards)
             else:
-                why = future.exception() if future.status == "error" else future.status
-                self._stop(DeviceError(f"Dask lost a shard ({why})"))
+                self._stop(DeviceError(f"Dask lost a shard ({future.exception() if status == 'error' else status})"))
         records = self._records([future for future, _ in finished])
+        if records is None:
+            return len(finished) < len(ended)
         for future, shards in finished:
+            self.futures.pop(future.key, None)
             future.release()
             for index in shards:
                 if index in records:
                     self._take_record(records[index])
             self._ask_again([index for index in shards if index not in records])
+        return True
 
     def _take_record(self, record: dict[str, Any]) -> None:
         self.known = set()
         self.lost = 0
         if record["status"] in ("done", "there"):
-            self.first_took_s = self.first_took_s or time.monotonic() - self.began
             self.done += 1
             if (name := f"{record['index']:08d}.json") in self.failed_before:
                 self.result._forget_failed(name)
             # The first shard of a worker says nothing of the others where much comes before it: masks.
-            if record["status"] == "done" and (self.done > self.workers or self.first_s < 0.2 * self.predicted_s):
+            if record["status"] == "there":
+                self.since = self.since and time.monotonic()
+            elif self.done > self.workers or self.first_s < 0.2 * self.predicted_s:
                 self.seconds.append(record["seconds"])
+            else:
+                self.first_took_s = max(self.first_took_s, record["seconds"])
         elif record["status"] == "refused" or (record["status"] == "failed" and record["code"] in (6, 130)):
             self._stop(error_from((record["code"], record["message"], "", 0, 0)))
         else:
@@ -224,23 +237,30 @@ class Driver:
 
     def _ask_again(self, shards: list[int]) -> None:
         if shards:
-            self.todo = itertools.chain(shards, self.todo)
+            self.again.extend(shards)
             self.waiting += len(shards)
             self.has_rest = True
 
-    def _records(self, futures: list[Any]) -> dict[int, dict[str, Any]]:
-        """What the tasks told, by the shard; nothing of those that were cut off on their way: by the end of the scheduler, which
-        its client notices a moment later, or of a worker."""
+    def _records(self, futures: list[Any]) -> dict[int, dict[str, Any]] | None:
+        """What the tasks told, by the shard, without those that Dask has nothing of. None: it did not come in time, and is fetched at
+        another look. Of a worker that died with records in its hands, the tasks are pending again, which Dask itself waits for until
+        they are done a second time, and with them for all others; of a scheduler that ends, its client notices it a moment later."""
         if not futures:
             return {}
+        client = self.cluster.client
         try:
-            return {record["index"]: record for told in self.cluster.client.gather(futures, errors="skip") for record in told}
+            came = client.sync(lambda: client.gather(futures, errors="skip", asynchronous=True), callback_timeout=self.fetch_s)
+        except TimeoutError:
+            self.fetch_s *= 2
+            return None
         except OSError:  # CommClosedError
             for _ in range(20):
                 if self._scheduler_is_gone():
                     break
                 time.sleep(0.05)
-            return {}
+            return None
+        self.fetch_s = _FETCH_S
+        return {record["index"]: record for told in came for record in told}
 
     def _tell_failed(self, record: dict[str, Any]) -> None:
         lock, index = self.result.lock, record["index"]
@@ -258,7 +278,7 @@ class Driver:
             return
         try:
             running = {key for keys in self.cluster.client.processing().values() for key in keys}
-            waiting = [future for key, (future, _) in self.futures.items() if key not in running]
+            waiting = [future for key, (future, _) in self.futures.items() if key not in running and future.status == "pending"]
             for future in waiting:
                 del self.futures[future.key]
             self.cluster.client.cancel(waiting)
@@ -281,10 +301,9 @@ class Driver:
         self.looked = now
         if self._scheduler_is_gone():
             return
-        workers = self.cluster.workers()
+        workers = self._see_workers()
         self.lost += len(self.known - workers)
         self.known = workers
-        self.workers = max(self.workers, len(workers))
         if self.lost == _LOSSES:
             predicted = self.result.lock["predicted"]["cpu_s"] * self.result.lock["per_shard"]
             print(f"{_LOSSES} workers were lost without a shard done between them: a shard takes about "
@@ -295,12 +314,18 @@ class Driver:
             print(f"shards {self.done} of {self.left}, {self.failed} failed, {len(workers)} workers, "
                   f"about {self.seconds_left(len(workers)):.0f} s left", file=sys.stderr, flush=True)
 
+    def _see_workers(self) -> set[str]:
+        workers = self.cluster.workers()
+        self.workers = max(self.workers, len(workers))
+        self.since = (self.since or time.monotonic()) if workers else None
+        return workers
+
     def seconds_left(self, workers: int) -> float:
         """From what the later half of the shards have taken; by the prediction until there is one, with what comes before the
         first. Of those in hand half is done, a task of each worker."""
         workers = max(1, workers)
         rest = self.left - self.done - self.failed
-        before = max(0.0, self._slower() * self.first_s - (time.monotonic() - self.began)) if not self.done else 0.0
+        before = max(0.0, self._slower() * self.first_s - self._worked_s()) if not self.done else 0.0
         in_hand = min(workers * max(1.0, self.task_s / max(self._shard_s(), 1e-9)), rest)
         return before + (rest - in_hand / 2) * self._shard_s() / workers
 
@@ -309,9 +334,13 @@ class Driver:
         return sum(lately) / len(lately) if lately else self._slower() * self.predicted_s
 
     def _slower(self) -> float:
-        """Than predicted, by the first shard: other work may have a share of the machine."""
-        took = self.first_took_s or time.monotonic() - self.began
+        """Than predicted, by the first shards: other work may have a share of the machine."""
+        took = self.first_took_s or self._worked_s()
         return max(1.0, took / max(self.first_s + self.predicted_s, 1e-9))
+
+    def _worked_s(self) -> float:
+        """Since there were workers: that they are waited for says nothing of how quick they are."""
+        return 0.0 if self.since is None else time.monotonic() - self.since
 
 
 class Hold:

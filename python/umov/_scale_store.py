@@ -250,7 +250,8 @@ def do_shard_of_store(index: int, program: str, url: str, threads: int, timeout_
 def do_shards(indices: str, *, program: str, place: str, threads: int, timeout_s: float, memory_mb: int | None,
               at_most_s: float) -> list[dict[str, Any]]:
     """Shards one after the other, in a Dask worker, until one could not be done or so many seconds are over: the record of each that
-    was begun; the others are for whoever has time. `indices`: their numbers as JSON, which Dask does not look through."""
+    was begun; the others are for whoever has time. When the worker is killed, those of a folder that are there are not done again; those
+    of an object store are, to the same object. `indices`: their numbers as JSON, which Dask does not look through."""
     do = do_shard_of_store if is_url(place) else do_shard
     until = time.monotonic() + at_most_s
     records: list[dict[str, Any]] = []
