@@ -117,8 +117,8 @@ class Driver:
         self.first_took_s = 0.0  # the longest of those before which much comes: masks
         self.since: float | None = None  # there are workers
         self.fetch_s = _FETCH_S
-        self.first_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) / threads
-        self.predicted_s = predicted["cpu_s"] * lock["per_shard"] / threads
+        self.first_s: float = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) / threads
+        self.predicted_s: float = predicted["cpu_s"] * lock["per_shard"] / threads
         self.known: set[str] = set()
         self.told = self.looked = time.monotonic()
         self.stopped: Error | Interrupted | None = None
