@@ -6,7 +6,6 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <ranges>
 
 namespace umov::scale {
 namespace {
@@ -50,10 +49,12 @@ double ExactSum::log() const {
     return std::numeric_limits<double>::quiet_NaN();
   const std::int64_t highest = wholes_.begin()->first;
   double sum = 0;
-  for (const auto &[power, whole] : wholes_ | std::views::reverse)
+  for (auto at = wholes_.rbegin(); at != wholes_.rend(); ++at) {
+    const auto &[power, whole] = *at;
     sum += std::ldexp(std::ldexp(static_cast<double>(whole.high), mantissa_bits) +
                           static_cast<double>(whole.low),
                       static_cast<int>(highest - power) - mantissa_bits + 1);
+  }
   return std::log(sum) - static_cast<double>(highest) * std::numbers::ln2;
 }
 
