@@ -4,7 +4,7 @@
 `umov reduce`, and asked of `umov invert pose`, `invert spin` and `identify`. The truth stays in this program.
 Prints a line a curve; writes the table, with what made it in its header.
 
-usage: blind_set.py [--counts] [--each 20] [--only N] [--seed 60] [--kinds pose,spin,identity] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
+usage: blind_set.py [--counts] [--each 20] [--only 9 or 8-19] [--seed 60] [--kinds pose,spin,identity] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
                     [options of umov invert and identify]
 --objects: of which poses and spins are asked; identities are of those of the library: cubesat, agena, box-wing, hst, each with its own light.
 --snr: of I, in the median of the lit sets: the telescope is made as large as that takes, its focal ratio kept. Without it: 28 cm.
@@ -150,6 +150,12 @@ def identity(chain, name, rng, seed, keep):
     return answer["verdict"], dict((who, share) for share, who in shares).get(name, 0.0), shares[0][1] == name, name in named, len(named), seconds
 
 
+def wanted(only, trial):
+    """`only`: "9", or "8-19", or nothing for all."""
+    first, _, last = (only or f"{trial}").partition("-")
+    return int(first) <= trial <= int(last or first)
+
+
 ASKED = {"pose": pose, "spin": spin, "identity": identity}
 
 
@@ -161,7 +167,7 @@ def main():
     parser.add_argument("--objects", default="cubesat,agena")
     parser.add_argument("--snr", type=float, default=0)
     parser.add_argument("--counts", action="store_true")
-    parser.add_argument("--only", type=int, help="this trial alone")
+    parser.add_argument("--only", help="this trial alone, or those from one to another: 8-19")
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path)
@@ -172,7 +178,7 @@ def main():
     for kind in o.kinds.split(","):
         done = right = covered = inside = 0
         for trial in range(o.each):
-            if o.only not in (None, trial):
+            if not wanted(o.only, trial):
                 continue
             rng = random.Random(f"{o.seed} {kind} {trial}")
             name = LIBRARY[trial % len(LIBRARY)] if kind == "identity" else names[trial % len(names)]
