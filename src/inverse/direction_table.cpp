@@ -14,17 +14,19 @@ namespace {
 
 constexpr std::size_t lanes = 4; // numbers that a processor multiplies at once, whichever it is
 
-/// Sum of `lanes` numbers each of the sixteen pairs about a pose, by their weights.
-void add_corners(const float *light, std::size_t stride, std::size_t nodes,
-                 const DirectionGrid::Corner &sun, const DirectionGrid::Corner &observer,
-                 float (&sum)[lanes]) {
+/// Sums of `width` numbers each of the sixteen pairs about a pose, by their weights.
+template <std::size_t width>
+void look_up(const float *light, std::size_t stride, std::size_t nodes,
+             const DirectionGrid::Corner &sun, const DirectionGrid::Corner &observer, float *out) {
+  float sum[width]{};
   for (std::size_t s = 0; s < 4; ++s)
     for (std::size_t o = 0; o < 4; ++o) {
       const float w = sun.weight[s] * observer.weight[o];
       const float *const at = light + (sun.node[s] * nodes + observer.node[o]) * stride;
-      for (std::size_t l = 0; l < lanes; ++l)
+      for (std::size_t l = 0; l < width; ++l)
         sum[l] += w * at[l];
     }
+  std::copy_n(sum, width, out);
 }
 
 } // namespace
@@ -105,17 +107,21 @@ PoseLighting DirectionTable::lighting(std::shared_ptr<const DirectionTable> tabl
     out.q.resize(poses.size() * bands);
     out.u.resize(poses.size() * bands, 0);
     constexpr std::size_t chunk = 4096;
+    const std::size_t stride = table->stride_;
+    const float *const light = table->light_.data();
     parallel_for((poses.size() + chunk - 1) / chunk, threads, [&](std::size_t c) {
+      std::vector<float> sum(stride);
       for (std::size_t k = c * chunk; k < std::min(poses.size(), (c + 1) * chunk); ++k) {
         const DirectionGrid::Corner sun = grid.corner(poses[k].sun);
         const DirectionGrid::Corner observer = grid.corner(poses[k].observer);
-        for (std::size_t first = 0; first < table->stride_; first += lanes) {
-          float sum[lanes]{};
-          add_corners(table->light_.data() + first, table->stride_, nodes, sun, observer, sum);
-          for (std::size_t l = 0; l < lanes && first + l < 2 * bands; ++l) {
-            auto &column = l % 2 == 0 ? out.i : out.q;
-            column[k * bands + (first + l) / 2] = static_cast<double>(sum[l]);
-          }
+        std::size_t first = 0;
+        for (; first + 2 * lanes <= stride; first += 2 * lanes) // three bands at once
+          look_up<2 * lanes>(light + first, stride, nodes, sun, observer, &sum[first]);
+        for (; first < stride; first += lanes)
+          look_up<lanes>(light + first, stride, nodes, sun, observer, &sum[first]);
+        for (std::size_t b = 0; b < bands; ++b) {
+          out.i[k * bands + b] = static_cast<double>(sum[2 * b]);
+          out.q[k * bands + b] = static_cast<double>(sum[2 * b + 1]);
         }
       }
     });

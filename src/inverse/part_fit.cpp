@@ -35,7 +35,6 @@ private:
   void put_slopes();
   void put_rows(const Weighed &data);
   void set(const VectorXd &off);
-  [[nodiscard]] double change(std::size_t unknown, std::size_t at) const;
   void residuals();
   [[nodiscard]] double misfit() const;
   bool trust();
@@ -47,6 +46,7 @@ private:
   const CurveLikelihood &of_;
   const ModelLight &model_;
   std::size_t cells_;
+  std::vector<std::size_t> lit_; ///< cells with light: of a few epochs, few
   std::vector<Unknown> unknowns_;
   /// ln I(y)/I(0) = first y + second y^2, y the slope's unknown: [part * cells + cell].
   std::vector<double> first_, second_;
@@ -72,6 +72,9 @@ PartFit::PartFit(const CurveLikelihood &likelihood, const ModelLight &model)
   for (std::size_t p = 0; p < model.parts.size(); ++p)
     if (!model.parts[p].smooth.empty())
       unknowns_.push_back({p, true});
+  for (std::size_t k = 0; k < cells_; ++k)
+    if (model.i[k] > 0)
+      lit_.push_back(k);
   put_slopes();
   put_rows(of_.weigh(model));
   i_.resize(cells_);
@@ -93,10 +96,12 @@ void PartFit::put_slopes() {
   by_slope_.assign(size, 0);
   for (const Unknown &unknown : unknowns_) {
     const PartLight &part = model_.parts[unknown.part];
-    for (std::size_t k = 0; unknown.is_slope && k < cells_; ++k) {
+    if (!unknown.is_slope)
+      continue;
+    for (const std::size_t k : lit_) {
       constexpr double dark = 1e-6; // of all light: whatever it becomes is not seen
       const double least = dark * model_.i[k];
-      if (!(model_.i[k] > 0) || !(std::max({part.i[k], part.smooth[k], part.rough[k]}) > least))
+      if (!(std::max({part.i[k], part.smooth[k], part.rough[k]}) > least))
         continue;
       const double less = std::log((part.smooth[k] + least) / (part.i[k] + least));
       const double more = std::log((part.rough[k] + least) / (part.i[k] + least));
@@ -148,7 +153,7 @@ void PartFit::set(const VectorXd &off) {
   constexpr double most = 5; // e-folds: beyond, three roughnesses say nothing
   for (std::size_t p = 0; p < parts; ++p) {
     const PartLight &part = model_.parts[p];
-    for (std::size_t k = 0; k < cells_; ++k) {
+    for (const std::size_t k : lit_) {
       const std::size_t at = p * cells_ + k;
       const double y = slope[p], power = y * (first_[at] + y * second_[at]);
       by_slope_[at] = std::abs(power) < most ? first_[at] + 2 * y * second_[at] : 0;
@@ -159,13 +164,6 @@ void PartFit::set(const VectorXd &off) {
       u_[k] += more * part.u[k];
     }
   }
-}
-
-/// Derivative of the factor of the part that an unknown is of.
-double PartFit::change(std::size_t unknown, std::size_t at) const {
-  const auto &[part, is_slope] = unknowns_[unknown];
-  const std::size_t k = part * cells_ + at;
-  return factor_[k] * (is_slope ? by_slope_[k] : model_.parts[part].sd);
 }
 
 /// Puts residuals of the best gains.
@@ -229,24 +227,34 @@ bool PartFit::trust() {
 }
 
 void PartFit::jacobian() {
+  std::vector<double> by_light(linear_.size()), all(ratios_.size());
+  for (std::size_t k = 0; k < linear_.size(); ++k)
+    by_light[k] = -root_[k] * gains_.gain[linear_[k].group];
+  for (std::size_t j = 0; j < ratios_.size(); ++j) {
+    const std::size_t cell = of_.rows_[ratios_[j]].at;
+    all[j] = std::max(i_[cell], 1e-9 * model_.i[cell]);
+  }
   for (std::size_t n = 0; n < unknowns_.size(); ++n) {
-    const auto column = static_cast<Index>(n);
-    const auto part = static_cast<Index>(unknowns_[n].part);
-    const PartLight &light = model_.parts[unknowns_[n].part];
+    const auto &[number, is_slope] = unknowns_[n];
+    const PartLight &part = model_.parts[number];
+    const double *const factor = &factor_[number * cells_];
+    const double *const by_slope = &by_slope_[number * cells_];
+    // Derivative of the factor of the part.
+    const auto change = [&](std::size_t cell) {
+      return factor[cell] * (is_slope ? by_slope[cell] : part.sd);
+    };
+    double *const column = jacobian_.col(static_cast<Index>(n)).data();
+    const double *const own = linear_parts_.col(static_cast<Index>(number)).data();
     for (std::size_t k = 0; k < linear_.size(); ++k)
-      jacobian_(static_cast<Index>(k), column) = -root_[k] * gains_.gain[linear_[k].group] *
-                                                 change(n, linear_[k].at) *
-                                                 linear_parts_(static_cast<Index>(k), part);
+      column[k] = by_light[k] * change(linear_[k].at) * own[k];
     for (std::size_t j = 0; j < ratios_.size(); ++j) {
       const auto &row = of_.rows_[ratios_[j]];
-      const double all = std::max(i_[row.at], 1e-9 * model_.i[row.at]);
-      const double more = change(n, row.at) / all;
-      const double dq = -more * (light.q[row.at] - q_[row.at] / all * light.i[row.at]);
-      const double du = -more * (light.u[row.at] - u_[row.at] / all * light.i[row.at]);
+      const double more = change(row.at) / all[j];
+      const double dq = -more * (part.q[row.at] - q_[row.at] / all[j] * part.i[row.at]);
+      const double du = -more * (part.u[row.at] - u_[row.at] / all[j] * part.i[row.at]);
       const std::size_t at = linear_.size() + 2 * j;
-      jacobian_(static_cast<Index>(at), column) = root_[at] * row.l_qq * dq;
-      jacobian_(static_cast<Index>(at + 1), column) =
-          root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
+      column[at] = root_[at] * row.l_qq * dq;
+      column[at + 1] = root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
     }
   }
 }
@@ -257,9 +265,10 @@ void PartFit::eliminate(MatrixXd &normal) const {
   const auto count = static_cast<Index>(unknowns_.size());
   const bool has_clouds = of_.errors_.has_clouds;
   MatrixXd along = MatrixXd::Zero(count, static_cast<Index>(of_.groups_));
-  for (std::size_t k = 0; k < linear_.size(); ++k)
-    along.col(static_cast<Index>(linear_[k].group)) -=
-        root_[k] * light_[k] * jacobian_.row(static_cast<Index>(k)).transpose();
+  for (Index n = 0; n < count; ++n)
+    for (std::size_t k = 0; k < linear_.size(); ++k)
+      along(n, static_cast<Index>(linear_[k].group)) -=
+          root_[k] * light_[k] * jacobian_(static_cast<Index>(k), n);
   // As gains_of has it, about the scale.
   const double sd = std::max(of_.errors_.zero_point_sd, 1e-6) * gains_.scale;
   const double stiffness = has_clouds ? 0 : 1 / (sd * sd);

@@ -274,10 +274,6 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
   out.modes = std::move(modes);
   out.samples = std::move(samples.draws);
   out.log_evidence = samples.log_evidence;
-  out.set95 =
-      inverse::highest_density(out.samples, out.is_broad ? std::span<const PoseMode>()
-                                                         : std::span<const PoseMode>(out.modes));
-  out.share_of_so3 = inverse::share_of(out.set95);
   out.measurements = likelihood.measurements();
   out.poses_lit = model.poses_lit() + (&quick == &model ? 0 : quick.poses_lit());
   return out;
@@ -454,6 +450,10 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
   UMOV_ASSIGN(fits, fit_places(models, places.best, errors, options));
   UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), fits, Freedom::Attitude,
                              {places.judged, options.grid}, options));
+  out.set95 =
+      inverse::highest_density(out.samples, out.is_broad ? std::span<const PoseMode>()
+                                                         : std::span<const PoseMode>(out.modes));
+  out.share_of_so3 = inverse::share_of(out.set95);
   errors.tell(out);
   if (&quick != &first && &quick != &model)
     out.poses_lit += quick.poses_lit();

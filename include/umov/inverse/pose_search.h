@@ -94,6 +94,7 @@ Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOption
 
 /// `search_pose` around given turnings with their rate free too: the last step of a search for a
 /// spin. `first`: quicker light of the same parts, which tells the starts that may become the best.
+/// The set is left empty: which attitudes it holds goes with the time that they are asked for.
 Result<PoseAnswer> refine_spin(const CurveModel &model, const CurveModel &first,
                                std::span<const Turning> starts, const SearchOptions &options);
 
