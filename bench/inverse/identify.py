@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Which object of a library: seeded random cubesats (units, panels, 3 to 5 materials over their faces), curves by rays in random fixed
 attitudes with noise of photons, at an unknown range; then objects that the library does not have.
-Prints a line a curve and the summary; with --copies the time and memory of a look through a large library.
+Prints a line a curve and the summary.
 
-usage: identify.py [--objects 10] [--trials 2] [--unseen 10] [--snr 100] [--seed 1] [--own] [--copies 100] [--umov PATH] [--work DIR]
+usage: identify.py [--objects 10] [--trials 2] [--unseen 10] [--index 100 [--copies 10]] [--snr 100] [--seed 1]
+                   [--own] [--umov PATH] [--work DIR] [options of umov identify]
 --trials: curves of each object. --own: scenarios are named, so that the best are judged by their own light.
---copies: every file of the library so many times, under names of their own."""
+--index 100: no curve is named; a library of so many objects of four metals is built, built again in other bands from the abundances that
+its files hold, and asked with one thread and with two, and so is one of --copies times as many files."""
 import argparse
+import collections
 import json
 import math
 import pathlib
@@ -22,6 +25,9 @@ import blind
 
 MATERIALS = ["aluminium_anodized", "cell_gaas", "mli_kapton", "paint_white", "paint_black", "film_aluminized", "aluminium", "cell_silicon",
              "titanium"]
+# Lobes alone: abundances of body light and of haze are of one material, and serve no other colours.
+METALS = {f"metal_{k}": f'[material.metal_{k}]\nindex = "{index}"\ndistribution = {{ model = "ggx", alpha = {alpha} }}\n'
+          for k, (index, alpha) in enumerate((("Au_Johnson", 0.3), ("Fe_Johnson", 0.1), ("Al_Rakic", 0.15), ("Ag_Johnson", 0.25)))}
 
 
 class Maker:
@@ -29,9 +35,10 @@ class Maker:
         self.o, self.work = o, work
 
     def scenario(self, name, method, attitude, materials, mesh):
-        return blind.SCENARIO.format(seed=self.o.seed, name=name, root=blind.ROOT, mesh=mesh, law=blind.inertial(attitude), step=12,
+        text = blind.SCENARIO.format(seed=self.o.seed, name=name, root=blind.ROOT, mesh=mesh, law=blind.inertial(attitude), step=12,
                                      materials="\n".join(f'{g} = "{m}"' for g, m in materials.items()), method=method,
                                      out=self.work / "out")
+        return text + "".join(METALS[m] for m in sorted(set(materials.values()) & set(METALS)))
 
     def object(self, number):
         """Mesh and materials of a random object."""
@@ -41,7 +48,7 @@ class Maker:
         if not mesh.exists():
             blind.run(self.o.umov, "mesh", "make", "cubesat", "--units", units, "--panels", panels, "-o", mesh, "-q")
         groups = sorted({line.split()[1] for line in mesh.read_text().splitlines() if line.startswith("usemtl ")})
-        few = rng.sample(MATERIALS, rng.randrange(3, 6))
+        few = rng.sample(sorted(METALS) if self.o.index else MATERIALS, rng.randrange(3, 5 if self.o.index else 6))
         return mesh, {group: rng.choice(few) for group in groups}
 
     def write(self, number):
@@ -72,16 +79,19 @@ def main():
     parser.add_argument("--objects", type=int, default=10)
     parser.add_argument("--trials", type=int, default=2)
     parser.add_argument("--unseen", type=int, default=10)
+    parser.add_argument("--index", type=int, default=0)
     parser.add_argument("--snr", type=float, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--own", action="store_true")
-    parser.add_argument("--copies", type=int, default=0)
+    parser.add_argument("--copies", type=int, default=10)
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov identify
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     maker = Maker(o, work)
+    if o.index:
+        return index(o, work, maker)
     scenarios = [maker.write(k) for k in range(o.objects)]
     (work / "place.toml").write_text(scenarios[0].read_text())
     began = time.time()
@@ -89,8 +99,6 @@ def main():
     print(f"library of {o.objects} objects: {time.time() - began:.1f} s", flush=True)
     own = ["--objects", *scenarios] if o.own else []
     names(o, work, maker, own)
-    if o.copies:
-        speed(o, work, maker)
 
 
 def names(o, work, maker, own):
@@ -119,23 +127,50 @@ def names(o, work, maker, own):
           f"{sum(p > line for p in none[False]) / m:.2f}; {statistics.median(seconds):.1f} s", flush=True)
 
 
-def speed(o, work, maker):
+def measured(*command):
+    """What a command printed, its seconds of processors, and the most memory of any so far [GB]."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    if done.returncode not in (0, 4):
+        raise SystemExit(done.stderr[-2000:])
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return json.loads(done.stdout), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, after.ru_maxrss / 1e6
+
+
+def index(o, work, maker):
+    scenarios = [maker.write(k) for k in range(o.index)]
+    for bands in ('["nm:440", "nm:540", "nm:640"]', None):
+        if bands:
+            for path in scenarios:
+                path.write_text(path.read_text().replace('set = "paper_rgb"', f"set = {bands}"))
+        else:
+            scenarios = [maker.write(k) for k in range(o.index)]
+        table, seconds, memory = measured(o.umov, "library", "build", *scenarios, "-o", work / "lib", "--json", *o.rest)
+        print(f"{o.index} objects of {table[0]['poses']} poses, {dict(collections.Counter(row['state'] for row in table))}: {seconds:.1f} s of processors, "
+              f"at most {memory:.2f} GB", flush=True)
+    (work / "place.toml").write_text(scenarios[0].read_text())
+    maker.curve(0, 0)
     large = work / "large"
     shutil.rmtree(large, ignore_errors=True)
     large.mkdir()
     for file in sorted((work / "lib").glob("*.umovsig")):
         for k in range(o.copies):
             shutil.copy(file, large / f"{file.stem}_{k:03d}.umovsig")
-    maker.curve(0, 0)
-    for _ in range(3):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        began = time.time()
-        done = subprocess.run([str(o.umov), "identify", str(work / "obs.csv"), "--library", str(large), "--scenario", str(work / "place.toml"), "--json"],
-                              capture_output=True, text=True)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        found = json.loads(done.stdout)
-        print(f"{found['objects']} objects: {time.time() - began:.2f} s, {after.ru_utime - before.ru_utime:.2f} s of processors, "
-              f"at most {after.ru_maxrss / 1e6:.2f} GB; best {found['best']}", flush=True)
+    took = {}
+    for library in (work / "lib", large):
+        answers = []
+        for threads in (1, 2):
+            found, seconds, memory = measured(o.umov, "identify", work / "obs.csv", "--library", library, "--scenario", work / "place.toml",
+                                              "--json", "--threads", threads)
+            took.setdefault(library, seconds)
+            answers.append(found)
+            print(f"{found['objects']} objects, {threads} threads: {seconds:.2f} s of processors, at most {memory:.2f} GB; best {found['best']}",
+                  flush=True)
+        print("the same answer with one thread and with two" if answers[0] == answers[1] else "ANOTHER ANSWER with two threads than with one",
+              flush=True)
+    each = (took[large] - took[work / "lib"]) / (o.index * (o.copies - 1))
+    looked = 14_000 * 16  # attitudes and epochs: docs/theory/inverse.md, section 12
+    print(f"an object more takes {1e3 * each:.2f} ms: {looked / each / 1e6:.0f} million pairs of attitude and epoch a second and core", flush=True)
 
 
 if __name__ == "__main__":
