@@ -21,6 +21,9 @@ using inverse::QuickLook;
 
 namespace {
 
+constexpr double table_doubt = 30;     // e-folds that a table is believed against
+constexpr std::size_t again_most = 60; // epochs of the second look
+
 /// The same search where colours may be others.
 SearchOptions recoloured_search(SearchOptions options) {
   options.errors = inverse::of_recoloured(options.errors);
@@ -43,8 +46,19 @@ private:
   Result<void> look_at_all();
   Result<void> rank_again();
   Result<void> search(std::size_t k);
+  [[nodiscard]] bool has_own_light(std::size_t k) const;
+  /// False where nobody has its light.
+  Result<bool> ask(std::size_t k);
   Result<void> ask_own_light();
+  Result<void> ask_before_none();
+  [[nodiscard]] std::vector<std::size_t> in_doubt() const;
+  [[nodiscard]] bool none_leads() const;
+  void judge_none();
   void weigh();
+  /// ln of the chance of each candidate before any data.
+  [[nodiscard]] double log_each() const {
+    return log_of((1 - options_.none_prior) / static_cast<double>(from_.count));
+  }
   void cut(std::vector<std::size_t> &ranked, std::size_t most, const std::vector<double> &by);
   [[nodiscard]] std::vector<Turning> best_of(const Signature &signature,
                                              std::span<const std::size_t> column) const;
@@ -60,6 +74,8 @@ private:
   std::vector<std::size_t> left_;
   std::size_t cells_ = 20;  ///< a side, of the last signature that was searched
   std::vector<double> kin_; ///< ln evidence of something like a candidate, of those searched
+  std::size_t asked_ = 0;   ///< for their own light
+  std::vector<std::size_t> unasked_; ///< as IdentityAnswer says
   IdentityAnswer out_;
 };
 
@@ -112,11 +128,10 @@ std::vector<Turning> Identification::best_of(const Signature &signature,
   return out;
 }
 
-/// The best of the look once more, with light between the nodes and more epochs.
+/// The best of the look once more, with light between the nodes and more epochs, and fitted: on the
+/// grid, which is 10 deg apart, an object of narrow glints is worse than one that has none.
 Result<void> Identification::rank_again() {
-  constexpr std::size_t most_epochs = 60;
-  const auto epochs = inverse::some_epochs(curve_.epochs.size(), most_epochs);
-  const CurveLikelihood likelihood(curve_, of_kin(options_.search.errors), epochs);
+  const auto epochs = inverse::some_epochs(curve_.epochs.size(), again_most);
   std::vector<double> by(from_.count, least_log);
   for (std::size_t j = 0; j < left_.size(); ++j) {
     tell("look again", j, left_.size());
@@ -124,11 +139,11 @@ Result<void> Identification::rank_again() {
     UMOV_TRY(from_.lend(left_[j], [&](const Signature &s, std::span<const std::size_t> column) {
       const CurveModel model(curve_, lighting_of(s, options_.search.threads),
                              {column.begin(), column.end()});
-      found = mean_evidence(model, likelihood, best_of(s, column), epochs, options_.look_grid,
-                            options_.search.threads);
+      found = inverse::table_peak(model, options_.search.errors, s.error, best_of(s, column),
+                                  epochs, options_.search.threads);
     }));
     UMOV_TRY(found);
-    by[left_[j]] = *found;
+    by[left_[j]] = out_.candidates[left_[j]].peak = *found;
   }
   cut(left_, options_.finalists, by);
   return {};
@@ -159,40 +174,95 @@ Result<void> Identification::search(std::size_t k) {
   return {};
 }
 
+bool Identification::has_own_light(std::size_t k) const {
+  return options_.own_light && (!options_.has_own_light || options_.has_own_light(k));
+}
+
+Result<bool> Identification::ask(std::size_t k) {
+  if (!has_own_light(k))
+    return false;
+  tell("own light", asked_, std::max(asked_ + 1, options_.own));
+  UMOV_ASSIGN(own, options_.own_light(k));
+  if (!own)
+    return false;
+  ++asked_;
+  CandidateFit &fit = out_.candidates[k];
+  fit.by = JudgedBy::Model;
+  fit.answer = std::move(own->answer);
+  fit.log_evidence =
+      fit.answer.log_evidence - own->log_variance / 2 + inverse::log_misfit(fit.answer);
+  return true;
+}
+
 /// Those that the tables hardly tell apart are asked, and whoever leads then.
 Result<void> Identification::ask_own_light() {
-  constexpr double hardly = 30; // e-folds
   const auto rank = [&](std::size_t k) { return out_.candidates[k].log_evidence; };
   std::ranges::stable_sort(left_, std::ranges::greater{}, rank);
-  const double line = left_.empty() ? 0 : rank(left_.front()) - hardly;
-  std::vector<std::size_t> waiting = left_;
-  for (std::size_t asked = 0; options_.own_light && asked < options_.own && !waiting.empty();) {
-    const std::size_t next = waiting.front();
+  const double line = left_.empty() ? 0 : rank(left_.front()) - table_doubt;
+  for (const std::size_t next : std::vector<std::size_t>(left_)) {
     const std::size_t best = *std::ranges::max_element(left_, {}, rank);
-    if (rank(next) < line && next != best)
+    if (asked_ >= options_.own || (rank(next) < line && next != best))
       return {};
-    waiting.erase(waiting.begin());
-    tell("own light", asked, options_.own);
-    UMOV_ASSIGN(own, options_.own_light(next));
-    if (!own)
-      continue;
-    ++asked;
-    CandidateFit &fit = out_.candidates[next];
-    fit.by = JudgedBy::Model;
-    fit.answer = std::move(own->answer);
-    fit.log_evidence =
-        fit.answer.log_evidence - own->log_variance / 2 + inverse::log_misfit(fit.answer);
+    UMOV_TRY(ask(next));
   }
   return {};
 }
 
-void Identification::weigh() {
-  const double each = (1 - options_.none_prior) / static_cast<double>(from_.count);
+/// Candidates whose own light can still be asked and that no signature rules out, best first.
+std::vector<std::size_t> Identification::in_doubt() const {
+  const auto mark = [&](std::size_t k) { // nothing is known of those that the look left behind
+    const CandidateFit &fit = out_.candidates[k];
+    return fit.by == JudgedBy::Table ? fit.log_evidence : fit.peak;
+  };
+  const bool has_all_epochs = curve_.epochs.size() <= again_most; // a peak of few is of fewer data
+  const auto is_ruled_out = [&](std::size_t k) {
+    return (has_all_epochs || out_.candidates[k].by == JudgedBy::Table) &&
+           mark(k) < out_.none_log_evidence - table_doubt;
+  };
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < from_.count; ++k)
+    if (out_.candidates[k].by != JudgedBy::Model && has_own_light(k) && !is_ruled_out(k))
+      out.push_back(k);
+  std::ranges::stable_sort(out, [&](std::size_t a, std::size_t b) {
+    const bool has_a = !std::isnan(mark(a)), has_b = !std::isnan(mark(b));
+    if (!has_a || !has_b)
+      return has_a == has_b ? out_.candidates[a].look > out_.candidates[b].look : has_a;
+    return mark(a) > mark(b);
+  });
+  return out;
+}
+
+bool Identification::none_leads() const {
+  double best = least_log;
+  for (const std::size_t k : left_)
+    best = std::max(best, out_.candidates[k].log_evidence);
+  return log_of(options_.none_prior) + out_.none_log_evidence > log_each() + best;
+}
+
+/// "None of these" is what is left when all others have been asked.
+Result<void> Identification::ask_before_none() {
+  for (const std::size_t next : in_doubt()) {
+    if (!none_leads() || asked_ >= options_.own_in_doubt)
+      break;
+    UMOV_ASSIGN(has_answered, ask(next));
+    if (has_answered && std::ranges::find(left_, next) == left_.end())
+      left_.push_back(next);
+  }
+  if (none_leads())
+    unasked_ = in_doubt();
+  out_.unasked = unasked_.size();
+  return {};
+}
+
+void Identification::judge_none() {
   double kin = least_log;
   for (const double one : kin_)
     kin = log_sum(kin, one - std::log(static_cast<double>(from_.count)));
   out_.none_log_evidence =
       log_sum(kin, inverse::featureless(curve_, options_.search.errors)) - std::log(2.0);
+}
+
+void Identification::weigh() {
   // Tables alone: their errors are common to neighbouring epochs, so that the rows weigh less.
   const bool has_models = std::ranges::any_of(
       out_.candidates, [](const CandidateFit &fit) { return fit.by == JudgedBy::Model; });
@@ -204,10 +274,18 @@ void Identification::weigh() {
   for (CandidateFit &fit : out_.candidates)
     if (fit.by == JudgedBy::Look)
       fit.log_evidence = std::nan("");
-    else
-      all = log_sum(all, log_of(each) + fit.log_evidence);
-  for (const std::size_t k : left_)
-    out_.candidates[k].probability = std::exp(log_of(each) + out_.candidates[k].log_evidence - all);
+  const auto evidence_of = [&](std::size_t k) {
+    return std::ranges::find(unasked_, k) == unasked_.end() ? out_.candidates[k].log_evidence
+                                                            : out_.none_log_evidence;
+  };
+  std::vector<std::size_t> judged = left_;
+  for (const std::size_t k : unasked_)
+    if (std::ranges::find(left_, k) == left_.end())
+      judged.push_back(k);
+  for (const std::size_t k : judged)
+    all = log_sum(all, log_each() + evidence_of(k));
+  for (const std::size_t k : judged)
+    out_.candidates[k].probability = std::exp(log_each() + evidence_of(k) - all);
   out_.none = std::exp(log_of(options_.none_prior) + out_.none_log_evidence - all);
   out_.order.resize(from_.count);
   std::iota(out_.order.begin(), out_.order.end(), std::size_t{0});
@@ -228,6 +306,8 @@ Result<IdentityAnswer> Identification::answer() {
     UMOV_TRY(search(left_[j]));
   }
   UMOV_TRY(ask_own_light());
+  judge_none();
+  UMOV_TRY(ask_before_none());
   weigh();
   return std::move(out_);
 }

@@ -99,6 +99,34 @@ Result<double> mean_evidence(const CurveModel &model, const CurveLikelihood &lik
   return -(least + likelihood.log_variance()) / 2 + std::log(sum / static_cast<double>(of));
 }
 
+Result<double> table_peak(const CurveModel &model, const CurveErrors &errors, double table_error,
+                          const std::vector<Turning> &best, std::span<const std::size_t> epochs,
+                          unsigned threads) {
+  // As in a search: a likelihood that a glint cannot veto first, then the table's own.
+  constexpr std::size_t starts = 60, kept = 12;
+  constexpr double apart = 5 * degree;
+  const std::size_t largest = level_of(table_error);
+  const CurveLikelihood rough(model.curve(), of_kin(errors), epochs);
+  const CurveLikelihood last(model.curve(), of_table(errors, table_levels[largest]), epochs);
+  auto fits = fit_turnings(model, rough, spread_out(best, starts, apart), epochs,
+                           {Freedom::Attitude, 4, 0, 0, 2e-3, threads});
+  fits = fit_turnings(model, last, turnings_of(fits, kept), epochs,
+                      {Freedom::Attitude, 12, 0, 0, 1e-3, threads});
+  if (fits.empty())
+    return tl::unexpected(stopped());
+  const auto at = turnings_of(fits, kept);
+  double out = least_log;
+  for (std::size_t level = 0; level <= largest; ++level) {
+    const CurveLikelihood likelihood(model.curve(), of_table(errors, table_levels[level]), epochs);
+    const auto compared = compare_all(model, likelihood, at, epochs, threads);
+    if (compared.empty())
+      return tl::unexpected(stopped());
+    for (const Comparison &one : compared)
+      out = std::max(out, -(one.minus_2_log + likelihood.log_variance()) / 2);
+  }
+  return out;
+}
+
 double independent_share(const ObservedCurve &curve, std::size_t cells) {
   double path = 0;
   for (std::size_t e = 1; e < curve.epochs.size(); ++e)

@@ -26,6 +26,11 @@ double featureless(const ObservedCurve &curve, CurveErrors errors);
 Result<double> mean_evidence(const CurveModel &model, const CurveLikelihood &likelihood,
                              const std::vector<Turning> &best, std::span<const std::size_t> epochs,
                              std::size_t of, unsigned threads);
+/// ln of the largest likelihood that a candidate's table reaches from some attitudes (best first)
+/// on some epochs, at whichever size of its error it is largest: no evidence, but little time.
+Result<double> table_peak(const CurveModel &model, const CurveErrors &errors, double table_error,
+                          const std::vector<Turning> &best, std::span<const std::size_t> epochs,
+                          unsigned threads);
 /// ln evidence of one candidate's table, all sizes of its error alike before: found with the
 /// largest of them, and carried to the smaller ones by its samples.
 Result<double> table_evidence(const CurveModel &model, const SearchOptions &search,

@@ -86,21 +86,6 @@ Result<std::vector<Turning>> search_grid(const CurveModel &model, const SearchOp
   return left;
 }
 
-/// The best, no two within `apart_rad`.
-std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t count,
-                                double apart_rad) {
-  std::vector<Turning> out;
-  for (const Turning &t : sorted) {
-    if (out.size() >= count)
-      break;
-    if (std::ranges::none_of(out, [&](const Turning &o) {
-          return angle_between(o.attitude, t.attitude) < apart_rad;
-        }))
-      out.push_back(t);
-  }
-  return out;
-}
-
 /// A few narrow peaks describe the posterior, and their samples bear it out.
 bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
   constexpr double widest = 10 * degree;
@@ -331,13 +316,6 @@ private:
   CurveLikelihood likelihood_;
 };
 
-std::vector<Turning> best_of(const std::vector<TurningFit> &fits, std::size_t count) {
-  std::vector<Turning> out;
-  for (std::size_t j = 0; j < std::min(fits.size(), count); ++j)
-    out.push_back(fits[j].turning);
-  return out;
-}
-
 /// The last steps, until the errors that they leave are those that they were taken with.
 Result<std::vector<TurningFit>> settled_fits(const CurveModel &model, std::vector<Turning> from,
                                              Freedom freedom, FoundErrors &errors,
@@ -349,7 +327,7 @@ Result<std::vector<TurningFit>> settled_fits(const CurveModel &model, std::vecto
     if (fits.empty())
       return tl::unexpected(stopped());
     constexpr std::size_t most = 24;
-    from = best_of(fits, most);
+    from = inverse::turnings_of(fits, most);
     bool has_changed = false;
     if (round + 1 == rounds)
       return fits;
@@ -395,9 +373,9 @@ Result<Places> find_places(const SearchModels &models, FoundErrors &errors,
   constexpr std::size_t most = 80;
   tell_refined(options, 0);
   const auto fits =
-      inverse::fit_turnings(quick, rough, spread_out(left, options.starts, 5 * degree),
+      inverse::fit_turnings(quick, rough, inverse::spread_out(left, options.starts, 5 * degree),
                             epochs_of_first_steps(model), tempered_steps);
-  Places out{std::move(left), best_of(fits, most)};
+  Places out{std::move(left), inverse::turnings_of(fits, most)};
   bool has_changed = false;
   if (fits.empty() || !errors.ask(out.best, has_changed))
     return tl::unexpected(stopped());
@@ -413,7 +391,7 @@ Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
   tell_refined(options, 1);
   const auto fits =
       inverse::fit_turnings(models.first, errors.likelihood(), places, {}, first_steps);
-  const auto from = best_of(fits, most);
+  const auto from = inverse::turnings_of(fits, most);
   bool has_changed = false;
   if (fits.empty() || !errors.ask(from, has_changed))
     return tl::unexpected(stopped());
@@ -436,7 +414,7 @@ double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> 
     // be far off yet.
     constexpr std::size_t handful = 5;
     plan.iterations = 12;
-    fits = inverse::fit_turnings(model, few, best_of(fits, handful), some, plan);
+    fits = inverse::fit_turnings(model, few, inverse::turnings_of(fits, handful), some, plan);
   }
   return fits.empty() ? -1 : fits.front().at.chi2 * all;
 }
@@ -491,7 +469,7 @@ std::vector<Turning> likely_spins(const CurveModel &first, const CurveErrors &er
   std::size_t count = std::min(fits.size(), least);
   while (count < std::min(fits.size(), most) && fits[count].at.chi2 < fits[0].at.chi2 + far)
     ++count;
-  return best_of(fits, count);
+  return inverse::turnings_of(fits, count);
 }
 
 } // namespace

@@ -148,6 +148,27 @@ double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) 
   return std::max(1.0, farthest_of(curve, epochs));
 }
 
+std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t count,
+                                double apart_rad) {
+  std::vector<Turning> out;
+  for (const Turning &t : sorted) {
+    if (out.size() >= count)
+      break;
+    if (std::ranges::none_of(out, [&](const Turning &o) {
+          return angle_between(o.attitude, t.attitude) < apart_rad;
+        }))
+      out.push_back(t);
+  }
+  return out;
+}
+
+std::vector<Turning> turnings_of(const std::vector<TurningFit> &fits, std::size_t count) {
+  std::vector<Turning> out;
+  for (std::size_t j = 0; j < std::min(fits.size(), count); ++j)
+    out.push_back(fits[j].turning);
+  return out;
+}
+
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
                                     std::span<const Turning> turnings,
                                     std::span<const std::size_t> epochs, unsigned threads,

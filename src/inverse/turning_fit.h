@@ -54,6 +54,12 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
                                      std::vector<Turning> starts,
                                      std::span<const std::size_t> epochs, const FitPlan &plan);
 
+/// The first of some turnings, which come best first, no two attitudes within `apart_rad`.
+std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t count,
+                                double apart_rad);
+/// Turnings of the first fits.
+std::vector<Turning> turnings_of(const std::vector<TurningFit> &fits, std::size_t count);
+
 /// -2 ln likelihood of each turning; empty if it was stopped. `near`: of each, the parts of one
 /// next to it (`CurveLikelihood::compare`), if there are any.
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,

@@ -113,6 +113,7 @@ public:
 
   /// Which scenario belongs to which object; Usage for one that has none.
   Result<void> assign(const Library &library);
+  [[nodiscard]] bool has(std::size_t k) const { return scenarios_.contains(k); }
   Result<std::optional<OwnAnswer>> answer(const Library &library, std::size_t k,
                                           const ObservedCurve &curve, const SearchOptions &search);
   /// What light from surface to surface makes of a verdict on a candidate that has answered.
@@ -262,6 +263,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   SearchOptions own_search = how.search;
   own_search.progress = {};
   how.own_light = [&](std::size_t k) { return own.answer(library, k, curve, own_search); };
+  how.has_own_light = [&](std::size_t k) { return own.has(k); };
   const Candidates candidates{
       library.size(), [&](std::size_t k, const LookAtCandidate &look) -> Result<void> {
         if (monitor.is_cancelled())

@@ -26,6 +26,14 @@ const std::string &best_name(const IdentityWords &words) {
   return words.names[words.answer->order.front()];
 }
 
+/// The best fit of own light misses the data by more than chance explains: as `invert` has it, one
+/// that fits may have been passed by. Where rows may be outliers chi-square says less.
+bool is_unlikely(const CandidateFit &best, const CurveErrors &errors) {
+  constexpr double unlikely = 1e-3;
+  return best.by == JudgedBy::Model && errors.outlier_share == 0 && dof_of(best.answer) > 0 &&
+         chi2_probability(best.answer.chi2, dof_of(best.answer)) < unlikely;
+}
+
 /// A probability in words; what is left of e^-700 is no number to tell anybody.
 std::string chance(double probability) {
   constexpr double told = 1e-4;
@@ -63,7 +71,8 @@ Table identity_table(const IdentityWords &words) {
     add_none();
   Table out;
   out.add("name", "", "of the object in the library", std::move(name));
-  out.add("probability", "", "they add up to 1; 0 for what the look left out",
+  out.add("probability", "",
+          "they add up to 1; 0 for what was left out, but where it may still be the one",
           std::move(probability));
   out.add("by", "",
           "look: left behind by it; table: its signature; model: its own light; kin: see "
@@ -79,9 +88,10 @@ Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve,
                    const CurveErrors &errors) {
   constexpr double sure = 0.95;
   const double best = answer.candidates[answer.order.front()].probability;
-  if (answer.none > sure && curve.epochs.size() > 1)
+  if (answer.unasked == 0 && answer.none > sure && curve.epochs.size() > 1)
     return Verdict::NoFit;
-  if (is_steady(curve, errors) || answer.is_cut || answer.none > best)
+  if (is_steady(curve, errors) || answer.is_cut || answer.unasked > 0 || answer.none > best ||
+      is_unlikely(answer.candidates[answer.order.front()], errors))
     return Verdict::Undetermined;
   // A table knows an object to some per cent: what is like it as closely takes its name.
   const bool has_own = answer.candidates[answer.order.front()].by == JudgedBy::Model;
@@ -102,7 +112,18 @@ std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurv
   if (words.answer->is_cut)
     out.emplace_back("objects that were left out of the search seem hardly worse than those that "
                      "were searched: the data do not tell that many apart");
+  if (words.answer->unasked > 0)
+    out.push_back(fmt::format(
+        "none of the objects that were asked for their own light explains the data, and {} more "
+        "whose scenarios are named were not asked, nor do their tables rule them out: that it is "
+        "none of these is not sure. Name fewer (--objects), those not asked first",
+        words.answer->unasked));
   const double dof = dof_of(best.answer);
+  if (words.verdict == Verdict::Undetermined && is_unlikely(best, errors))
+    out.push_back(fmt::format("the best fit misses the data by more than their errors (chance "
+                              "{:.1g}): a better one may have been passed by, or errors and "
+                              "--floor are too small, so the name is not sure",
+                              chi2_probability(best.answer.chi2, dof)));
   constexpr double unlikely = 1e-6;
   if (best.answer.chi2 > 2 * dof && chi2_probability(best.answer.chi2, dof) < unlikely)
     out.push_back(fmt::format("{} explains the data badly: chi-square {:.4g} of {:.0f} degrees of "
@@ -179,6 +200,7 @@ std::string json_of(const IdentityWords &words, const std::string &library) {
   out["objects"] = words.names.size();
   out["library_sha256"] = library;
   out["is_cut"] = answer.is_cut;
+  out["unasked"] = answer.unasked;
   if (words.light_between)
     out["light_between"] = *words.light_between;
   else
@@ -186,7 +208,7 @@ std::string json_of(const IdentityWords &words, const std::string &library) {
   out["by"] = name_of(best_of(words).by);
   ordered_json rows = ordered_json::array();
   for (const std::size_t k : answer.order)
-    if (answer.candidates[k].by != JudgedBy::Look)
+    if (answer.candidates[k].by != JudgedBy::Look || answer.candidates[k].probability > 0)
       rows.push_back({{"name", words.names[k]},
                       {"probability", answer.candidates[k].probability},
                       {"log_evidence", answer.candidates[k].log_evidence},

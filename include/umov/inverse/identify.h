@@ -1,6 +1,7 @@
 #pragma once
 // Which object of many made a curve, in whatever attitude: docs/theory/inverse.md, section 12.
 
+#include <limits>
 #include <optional>
 #include <umov/inverse/pose_search.h>
 #include <umov/inverse/signature.h>
@@ -43,8 +44,11 @@ struct IdentifyOptions {
   std::size_t shortlist = 30;     ///< objects that are looked at again, with all of their light
   std::size_t finalists = 6;      ///< objects whose attitudes are searched for
   std::size_t own = 6;            ///< objects that are asked for their own light, at most
+  std::size_t own_in_doubt = 12;  ///< the same as long as "none of them" leads
   /// The answer of the own light of candidate k; none where nobody has it. May be empty.
   std::function<Result<std::optional<OwnAnswer>>(std::size_t k)> own_light = {};
+  /// Whether somebody has the own light of candidate k. Empty: of each, if there is any at all.
+  std::function<bool(std::size_t k)> has_own_light = {};
 };
 
 /// One candidate.
@@ -53,6 +57,9 @@ struct CandidateFit {
   double look = 0; ///< ln evidence of the quick look, among candidates alone
   /// ln evidence with the errors' own logarithms, comparable between candidates; NaN: not searched.
   double log_evidence = 0;
+  /// ln of the largest likelihood through its signature, of those that were looked at again; else
+  /// NaN.
+  double peak = std::numeric_limits<double>::quiet_NaN();
   JudgedBy by = JudgedBy::Look;
   PoseAnswer answer; ///< empty where `by` is Look
 };
@@ -65,10 +72,14 @@ struct IdentityAnswer {
   double none_log_evidence = 0;
   /// A candidate that was left out of the searches may be as good as those that were not.
   bool is_cut = false;
+  /// Where "none of them" leads: candidates whose own light could have been asked and was not, and
+  /// that no signature rules out. They keep the odds to "none" that they had before the data.
+  std::size_t unasked = 0;
 };
 
 /// Compares all candidates: a quick look at each, searches through the signatures of the best, and
-/// through their own light where it is to be had. "None of them" stands for an object that is like
+/// through their own light where it is to be had, that of more of them as long as none of them
+/// explains the curve. "None of them" stands for an object that is like
 /// one of them but a quarter off in I, and for one whose light hardly changes (a constant, or a
 /// diffuse sphere). BadInput for a curve without measurements; Interrupted; errors of `lend`.
 Result<IdentityAnswer> identify(const ObservedCurve &curve, const Candidates &candidates,
