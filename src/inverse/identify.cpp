@@ -22,6 +22,7 @@ using inverse::QuickLook;
 namespace {
 
 constexpr double table_doubt = 30;     // e-folds that a table is believed against
+constexpr double hardly = 3;           // e-folds by which one that is left out is hardly worse
 constexpr std::size_t again_most = 60; // epochs of the second look
 
 /// The same search where colours may be others.
@@ -38,6 +39,7 @@ public:
       : curve_(curve), from_(candidates), options_(options),
         look_(curve, options.search.errors, options.look_grid, options.look_epochs) {
     out_.candidates.resize(candidates.count);
+    is_dark_.resize(candidates.count);
   }
 
   Result<IdentityAnswer> answer();
@@ -45,13 +47,23 @@ public:
 private:
   Result<void> look_at_all();
   Result<void> rank_again();
+  Result<void> add_kin(std::size_t k);
   Result<void> search(std::size_t k);
   [[nodiscard]] bool has_own_light(std::size_t k) const;
   /// False where nobody has its light.
   Result<bool> ask(std::size_t k);
   Result<void> ask_own_light();
   Result<void> ask_before_none();
+  /// E-folds that rule an object out by its table. Its errors are common to neighbouring epochs, so
+  /// that the rows weigh less, as in `weigh`.
+  [[nodiscard]] double doubt() const {
+    return table_doubt / inverse::independent_share(curve_, cells_);
+  }
+  [[nodiscard]] double mark_of(std::size_t k) const;
+  [[nodiscard]] bool is_ruled_out(std::size_t k) const;
   [[nodiscard]] std::vector<std::size_t> in_doubt() const;
+  [[nodiscard]] bool is_cut() const;
+  [[nodiscard]] std::size_t unsettled() const;
   [[nodiscard]] bool none_leads() const;
   void judge_none();
   void weigh();
@@ -72,22 +84,22 @@ private:
   const IdentifyOptions &options_;
   QuickLook look_;
   std::vector<std::size_t> left_;
-  std::size_t cells_ = 20;  ///< a side, of the last signature that was searched
-  std::vector<double> kin_; ///< ln evidence of something like a candidate, of those searched
-  std::size_t asked_ = 0;   ///< for their own light
-  std::vector<std::size_t> unasked_; ///< as IdentityAnswer says
+  std::vector<std::size_t> hardly_worse_; ///< than the best, and left out of the searches
+  std::size_t cells_ = 20;                ///< a side, of the last signature that was searched
+  std::vector<double> kin_;   ///< ln evidence of something like a candidate, of those judged
+  std::size_t asked_ = 0;     ///< for their own light
+  std::vector<bool> is_dark_; ///< nobody had its light when it was asked
   IdentityAnswer out_;
 };
 
-/// Leaves the `most` best, and remembers whether the first that goes was hardly worse.
+/// Leaves the `most` best, and remembers those that go though they were hardly worse.
 void Identification::cut(std::vector<std::size_t> &ranked, std::size_t most,
                          const std::vector<double> &by) {
   std::ranges::stable_sort(ranked, [&](std::size_t a, std::size_t b) { return by[a] > by[b]; });
-  constexpr double hardly = 3; // e-folds
-  if (ranked.size() <= most)
-    return;
-  out_.is_cut = out_.is_cut || by[ranked[most]] > by[ranked.front()] - hardly;
-  ranked.resize(most);
+  for (std::size_t j = most; j < ranked.size(); ++j)
+    if (by[ranked[j]] > by[ranked.front()] - hardly)
+      hardly_worse_.push_back(ranked[j]);
+  ranked.resize(std::min(most, ranked.size()));
 }
 
 Result<void> Identification::look_at_all() {
@@ -149,33 +161,43 @@ Result<void> Identification::rank_again() {
   return {};
 }
 
-/// Attitudes of one candidate through its signature, and the evidence of something like it.
-Result<void> Identification::search(std::size_t k) {
-  CandidateFit &fit = out_.candidates[k];
-  const CurveErrors &errors = options_.search.errors;
+/// The evidence of something like a candidate.
+Result<void> Identification::add_kin(std::size_t k) {
   const unsigned threads = options_.search.threads;
-  Result<double> own = 0.0, recoloured = 0.0, like = 0.0;
+  Result<double> recoloured = 0.0, like = 0.0;
   UMOV_TRY(from_.lend(k, [&](const Signature &s, std::span<const std::size_t> column) {
     const CurveModel model(curve_, lighting_of(s, threads), {column.begin(), column.end()});
-    like = mean_evidence(model, CurveLikelihood(curve_, of_kin(errors)), best_of(s, column), {},
-                         options_.look_grid, threads);
+    like = mean_evidence(model, CurveLikelihood(curve_, of_kin(options_.search.errors)),
+                         best_of(s, column), {}, options_.look_grid, threads);
     PoseAnswer unused;
-    cells_ = s.cells;
-    own = inverse::table_evidence(model, options_.search, s.error, fit.answer);
     recoloured =
         inverse::table_evidence(model, recoloured_search(options_.search), s.error, unused);
   }));
   UMOV_TRY(like);
-  UMOV_TRY(own);
   UMOV_TRY(recoloured);
-  fit.by = JudgedBy::Table;
-  fit.log_evidence = *own;
   kin_.push_back(log_sum(*like, *recoloured) - std::log(2.0));
   return {};
 }
 
+/// Attitudes of one candidate through its signature.
+Result<void> Identification::search(std::size_t k) {
+  CandidateFit &fit = out_.candidates[k];
+  Result<double> own = 0.0;
+  UMOV_TRY(from_.lend(k, [&](const Signature &s, std::span<const std::size_t> column) {
+    const CurveModel model(curve_, lighting_of(s, options_.search.threads),
+                           {column.begin(), column.end()});
+    cells_ = s.cells;
+    own = inverse::table_evidence(model, options_.search, s.error, fit.answer);
+  }));
+  UMOV_TRY(own);
+  fit.by = JudgedBy::Table;
+  fit.log_evidence = *own;
+  return add_kin(k);
+}
+
 bool Identification::has_own_light(std::size_t k) const {
-  return options_.own_light && (!options_.has_own_light || options_.has_own_light(k));
+  return options_.own_light && !is_dark_[k] &&
+         (!options_.has_own_light || options_.has_own_light(k));
 }
 
 Result<bool> Identification::ask(std::size_t k) {
@@ -183,6 +205,7 @@ Result<bool> Identification::ask(std::size_t k) {
     return false;
   tell("own light", asked_, std::max(asked_ + 1, options_.own));
   UMOV_ASSIGN(own, options_.own_light(k));
+  is_dark_[k] = !own;
   if (!own)
     return false;
   ++asked_;
@@ -198,7 +221,7 @@ Result<bool> Identification::ask(std::size_t k) {
 Result<void> Identification::ask_own_light() {
   const auto rank = [&](std::size_t k) { return out_.candidates[k].log_evidence; };
   std::ranges::stable_sort(left_, std::ranges::greater{}, rank);
-  const double line = left_.empty() ? 0 : rank(left_.front()) - table_doubt;
+  const double line = left_.empty() ? 0 : rank(left_.front()) - doubt();
   for (const std::size_t next : std::vector<std::size_t>(left_)) {
     const std::size_t best = *std::ranges::max_element(left_, {}, rank);
     if (asked_ >= options_.own || (rank(next) < line && next != best))
@@ -208,28 +231,55 @@ Result<void> Identification::ask_own_light() {
   return {};
 }
 
+/// What is known of a candidate that has not been asked: NaN of one that the look left behind.
+double Identification::mark_of(std::size_t k) const {
+  const CandidateFit &fit = out_.candidates[k];
+  return fit.by == JudgedBy::Table ? fit.log_evidence : fit.peak;
+}
+
+/// Its table says that it is not the one. A peak of few epochs is of fewer data than "none" is.
+bool Identification::is_ruled_out(std::size_t k) const {
+  const bool has_all = curve_.epochs.size() <= again_most;
+  return (has_all || out_.candidates[k].by == JudgedBy::Table) &&
+         mark_of(k) < out_.none_log_evidence - doubt();
+}
+
 /// Candidates whose own light can still be asked and that no signature rules out, best first.
 std::vector<std::size_t> Identification::in_doubt() const {
-  const auto mark = [&](std::size_t k) { // nothing is known of those that the look left behind
-    const CandidateFit &fit = out_.candidates[k];
-    return fit.by == JudgedBy::Table ? fit.log_evidence : fit.peak;
-  };
-  const bool has_all_epochs = curve_.epochs.size() <= again_most; // a peak of few is of fewer data
-  const auto is_ruled_out = [&](std::size_t k) {
-    return (has_all_epochs || out_.candidates[k].by == JudgedBy::Table) &&
-           mark(k) < out_.none_log_evidence - table_doubt;
-  };
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < from_.count; ++k)
     if (out_.candidates[k].by != JudgedBy::Model && has_own_light(k) && !is_ruled_out(k))
       out.push_back(k);
   std::ranges::stable_sort(out, [&](std::size_t a, std::size_t b) {
-    const bool has_a = !std::isnan(mark(a)), has_b = !std::isnan(mark(b));
+    const bool has_a = !std::isnan(mark_of(a)), has_b = !std::isnan(mark_of(b));
     if (!has_a || !has_b)
       return has_a == has_b ? out_.candidates[a].look > out_.candidates[b].look : has_a;
-    return mark(a) > mark(b);
+    return mark_of(a) > mark_of(b);
   });
   return out;
+}
+
+/// One that was left out, and not asked since, may be the one: it was hardly worse, or "none" leads
+/// and its table, looked at again, does not rule it out.
+bool Identification::is_cut() const {
+  const bool leads = none_leads();
+  for (std::size_t k = 0; k < from_.count; ++k) {
+    const CandidateFit &fit = out_.candidates[k];
+    if (fit.by == JudgedBy::Look && !has_own_light(k) && leads && !std::isnan(fit.peak) &&
+        !is_ruled_out(k))
+      return true;
+  }
+  return std::ranges::any_of(
+      hardly_worse_, [&](std::size_t k) { return out_.candidates[k].by != JudgedBy::Model; });
+}
+
+/// Candidates whose own search did not come to rest, and that a better fit may bring to "none".
+std::size_t Identification::unsettled() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(out_.candidates, [&](const CandidateFit &fit) {
+        return fit.by == JudgedBy::Model && !fit.answer.is_settled &&
+               fit.log_evidence > out_.none_log_evidence - table_doubt;
+      }));
 }
 
 bool Identification::none_leads() const {
@@ -245,12 +295,18 @@ Result<void> Identification::ask_before_none() {
     if (!none_leads() || asked_ >= options_.own_in_doubt)
       break;
     UMOV_ASSIGN(has_answered, ask(next));
-    if (has_answered && std::ranges::find(left_, next) == left_.end())
-      left_.push_back(next);
+    if (!has_answered || std::ranges::find(left_, next) != left_.end())
+      continue;
+    left_.push_back(next);
+    UMOV_TRY(add_kin(next));
+    judge_none();
   }
-  if (none_leads())
-    unasked_ = in_doubt();
-  out_.unasked = unasked_.size();
+  if (!none_leads())
+    return {};
+  for (const std::size_t k : in_doubt()) {
+    out_.candidates[k].is_unasked = true;
+    ++out_.unasked;
+  }
   return {};
 }
 
@@ -275,12 +331,12 @@ void Identification::weigh() {
     if (fit.by == JudgedBy::Look)
       fit.log_evidence = std::nan("");
   const auto evidence_of = [&](std::size_t k) {
-    return std::ranges::find(unasked_, k) == unasked_.end() ? out_.candidates[k].log_evidence
-                                                            : out_.none_log_evidence;
+    const CandidateFit &fit = out_.candidates[k];
+    return fit.is_unasked ? out_.none_log_evidence : fit.log_evidence;
   };
-  std::vector<std::size_t> judged = left_;
-  for (const std::size_t k : unasked_)
-    if (std::ranges::find(left_, k) == left_.end())
+  std::vector<std::size_t> judged;
+  for (std::size_t k = 0; k < from_.count; ++k)
+    if (out_.candidates[k].is_unasked || out_.candidates[k].by != JudgedBy::Look)
       judged.push_back(k);
   for (const std::size_t k : judged)
     all = log_sum(all, log_each() + evidence_of(k));
@@ -291,6 +347,8 @@ void Identification::weigh() {
   std::iota(out_.order.begin(), out_.order.end(), std::size_t{0});
   std::ranges::stable_sort(out_.order, [&](std::size_t a, std::size_t b) {
     const CandidateFit &x = out_.candidates[a], &y = out_.candidates[b];
+    if (x.probability != y.probability)
+      return x.probability > y.probability;
     const bool is_x = x.by != JudgedBy::Look, is_y = y.by != JudgedBy::Look;
     if (is_x != is_y)
       return is_x;
@@ -308,6 +366,8 @@ Result<IdentityAnswer> Identification::answer() {
   UMOV_TRY(ask_own_light());
   judge_none();
   UMOV_TRY(ask_before_none());
+  out_.is_cut = is_cut();
+  out_.unsettled = unsettled();
   weigh();
   return std::move(out_);
 }

@@ -275,7 +275,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   IdentityWords words{
       library.names(), library.errors(), &answer, verdict_of(answer, curve, errors), {}};
   words.notes = notes_of(words, curve, errors);
-  const std::size_t best = answer.order.front();
+  const std::size_t best = best_searched(answer);
   PoseAnswer pose = answer.candidates[best].answer;
   pose.errors = errors;
   Table fit;

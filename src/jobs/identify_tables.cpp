@@ -17,13 +17,12 @@ double dof_of(const PoseAnswer &answer) {
   return static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
 }
 
-/// The candidate that leads; nothing if none was searched.
 const CandidateFit &best_of(const IdentityWords &words) {
-  return words.answer->candidates[words.answer->order.front()];
+  return words.answer->candidates[best_searched(*words.answer)];
 }
 
 const std::string &best_name(const IdentityWords &words) {
-  return words.names[words.answer->order.front()];
+  return words.names[best_searched(*words.answer)];
 }
 
 /// The best fit of own light misses the data by more than chance explains: as `invert` has it, one
@@ -40,7 +39,17 @@ std::string chance(double probability) {
   return probability > 0 && probability < told ? "< 0.01 %" : percent(probability) + " %";
 }
 
+/// How an object was judged, in a word.
+const char *judged_by(const CandidateFit &fit) {
+  return fit.is_unasked ? "unasked" : name_of(fit.by);
+}
+
 } // namespace
+
+std::size_t best_searched(const IdentityAnswer &answer) {
+  return *std::ranges::find_if(
+      answer.order, [&](std::size_t k) { return answer.candidates[k].by != JudgedBy::Look; });
+}
 
 Table identity_table(const IdentityWords &words) {
   const IdentityAnswer &answer = *words.answer;
@@ -61,7 +70,7 @@ Table identity_table(const IdentityWords &words) {
     if (!has_none && answer.none > fit.probability)
       add_none();
     name.push_back(words.names[k]);
-    by.emplace_back(name_of(fit.by));
+    by.emplace_back(judged_by(fit));
     probability.push_back(fit.probability);
     log_evidence.push_back(fit.log_evidence);
     chi2.push_back(fit.by == JudgedBy::Look ? std::nan("") : fit.answer.chi2);
@@ -75,8 +84,8 @@ Table identity_table(const IdentityWords &words) {
           "they add up to 1; 0 for what was left out, but where it may still be the one",
           std::move(probability));
   out.add("by", "",
-          "look: left behind by it; table: its signature; model: its own light; kin: see "
-          "docs/theory/inverse.md",
+          "look: left behind by it; table: its signature; model: its own light; "
+          "unasked: may be it, its own light was not asked; kin: see docs/theory/inverse.md",
           std::move(by));
   out.add("log_evidence", "", "ln of the evidence, up to one constant", std::move(log_evidence));
   out.add("chi2", "", "of its best attitude", std::move(chi2));
@@ -87,16 +96,17 @@ Table identity_table(const IdentityWords &words) {
 Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve,
                    const CurveErrors &errors) {
   constexpr double sure = 0.95;
-  const double best = answer.candidates[answer.order.front()].probability;
-  if (answer.unasked == 0 && answer.none > sure && curve.epochs.size() > 1)
+  const CandidateFit &best = answer.candidates[best_searched(answer)];
+  const bool is_open = answer.is_cut || answer.unasked > 0;
+  if (!is_open && answer.unsettled == 0 && answer.none > sure && curve.epochs.size() > 1)
     return Verdict::NoFit;
-  if (is_steady(curve, errors) || answer.is_cut || answer.unasked > 0 || answer.none > best ||
-      is_unlikely(answer.candidates[answer.order.front()], errors))
+  if (is_steady(curve, errors) || is_open || answer.none > best.probability ||
+      is_unlikely(best, errors))
     return Verdict::Undetermined;
   // A table knows an object to some per cent: what is like it as closely takes its name.
-  const bool has_own = answer.candidates[answer.order.front()].by == JudgedBy::Model;
-  return best > sure && has_own && curve.epochs.size() > 1 ? Verdict::Determined
-                                                           : Verdict::Ambiguous;
+  const bool has_own = best.by == JudgedBy::Model;
+  return best.probability > sure && has_own && curve.epochs.size() > 1 ? Verdict::Determined
+                                                                       : Verdict::Ambiguous;
 }
 
 std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve,
@@ -108,16 +118,21 @@ std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurv
         "{} was judged through the library's table, whose light is off by {} % between its "
         "directions: an object that differs from it by less cannot be told from it. Name its "
         "scenario (--objects) and its own light decides",
-        printable(best_name(words)), percent(words.table_errors[words.answer->order.front()])));
+        printable(best_name(words)), percent(words.table_errors[best_searched(*words.answer)])));
   if (words.answer->is_cut)
-    out.emplace_back("objects that were left out of the search seem hardly worse than those that "
-                     "were searched: the data do not tell that many apart");
+    out.emplace_back("objects that were left out of the search may explain the data as well as "
+                     "those that were searched: it does not tell that many apart");
   if (words.answer->unasked > 0)
     out.push_back(fmt::format(
         "none of the objects that were asked for their own light explains the data, and {} more "
-        "whose scenarios are named were not asked, nor do their tables rule them out: that it is "
-        "none of these is not sure. Name fewer (--objects), those not asked first",
+        "whose scenarios are named were not asked, though their tables are not known to rule them "
+        "out: that it is none of these is not sure. Name fewer (--objects), those not asked first",
         words.answer->unasked));
+  if (words.verdict == Verdict::Undetermined && words.answer->unsettled > 0)
+    out.push_back(
+        fmt::format("the search of {} in its own light did not come to rest: a better fit "
+                    "may be there, and it is not sure that it is none of these",
+                    counted(words.answer->unsettled, "object")));
   const double dof = dof_of(best.answer);
   if (words.verdict == Verdict::Undetermined && is_unlikely(best, errors))
     out.push_back(fmt::format("the best fit misses the data by more than their errors (chance "
@@ -158,10 +173,11 @@ std::string summary_of(const IdentityWords &words) {
 
 /// What an object was judged by, as people say it.
 static std::string words_of(const std::string &by) {
-  return by == "model"   ? "judged by its own light"
-         : by == "table" ? "judged by the library's table"
-         : by == "kin"   ? "judged by what is like an object of the library"
-                         : "by a quick look alone";
+  return by == "model"     ? "judged by its own light"
+         : by == "table"   ? "judged by the library's table"
+         : by == "unasked" ? "not asked for its own light, and it may be the one"
+         : by == "kin"     ? "judged by what is like an object of the library"
+                           : "by a quick look alone";
 }
 
 std::string odds_of(const IdentityWords &words) {
@@ -201,6 +217,7 @@ std::string json_of(const IdentityWords &words, const std::string &library) {
   out["library_sha256"] = library;
   out["is_cut"] = answer.is_cut;
   out["unasked"] = answer.unasked;
+  out["unsettled"] = answer.unsettled;
   if (words.light_between)
     out["light_between"] = *words.light_between;
   else
@@ -208,11 +225,11 @@ std::string json_of(const IdentityWords &words, const std::string &library) {
   out["by"] = name_of(best_of(words).by);
   ordered_json rows = ordered_json::array();
   for (const std::size_t k : answer.order)
-    if (answer.candidates[k].by != JudgedBy::Look || answer.candidates[k].probability > 0)
+    if (answer.candidates[k].by != JudgedBy::Look)
       rows.push_back({{"name", words.names[k]},
                       {"probability", answer.candidates[k].probability},
                       {"log_evidence", answer.candidates[k].log_evidence},
-                      {"by", name_of(answer.candidates[k].by)}});
+                      {"by", judged_by(answer.candidates[k])}});
   out["searched"] = rows;
   out["notes"] = words.notes;
   return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";

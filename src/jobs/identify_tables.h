@@ -20,6 +20,8 @@ struct IdentityWords {
 /// The name of the row that stands for none of the library.
 inline constexpr const char *none_of_these = "none of these";
 
+/// The most probable of the candidates that were searched: it has attitudes and a chi-square.
+std::size_t best_searched(const IdentityAnswer &answer);
 /// identity.ecsv: most probable first, none of these among them.
 Table identity_table(const IdentityWords &words);
 /// Determined: one object holds over 95 % in its own light; NoFit: none of these does. What a

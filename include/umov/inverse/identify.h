@@ -61,20 +61,27 @@ struct CandidateFit {
   /// NaN.
   double peak = std::numeric_limits<double>::quiet_NaN();
   JudgedBy by = JudgedBy::Look;
-  PoseAnswer answer; ///< empty where `by` is Look
+  bool is_unasked = false; ///< one of IdentityAnswer::unasked
+  PoseAnswer answer;       ///< empty where `by` is Look
 };
 
 /// Which object it was.
 struct IdentityAnswer {
   std::vector<CandidateFit> candidates; ///< as they were given
-  std::vector<std::size_t> order;       ///< of them, most probable first
-  double none = 1;                      ///< probability that it is none of them
+  /// Of them, most probable first; those that are unasked may be before all that were searched.
+  std::vector<std::size_t> order;
+  double none = 1; ///< probability that it is none of them
   double none_log_evidence = 0;
-  /// A candidate that was left out of the searches may be as good as those that were not.
+  /// A candidate that was left out of the searches, and not asked for its own light since, may be
+  /// as good as those that were not: it was hardly worse, or "none of them" leads, nobody has its
+  /// light and its signature does not rule it out.
   bool is_cut = false;
   /// Where "none of them" leads: candidates whose own light could have been asked and was not, and
   /// that no signature rules out. They keep the odds to "none" that they had before the data.
   std::size_t unasked = 0;
+  /// Candidates whose search in their own light did not come to rest (PoseAnswer::is_settled) and
+  /// that are within e^30 of "none of them": a better fit may bring them there.
+  std::size_t unsettled = 0;
 };
 
 /// Compares all candidates: a quick look at each, searches through the signatures of the best, and

@@ -287,6 +287,65 @@ TEST(Identify, NoneIsNotSureWhereSomeWereNotAsked) {
   for (const CandidateFit &fit : answer->candidates)
     all += fit.probability;
   EXPECT_NEAR(all, 1, 1e-9);
+  for (std::size_t j = 0; j + 1 < answer->order.size(); ++j)
+    EXPECT_GE(answer->candidates[answer->order[j]].probability,
+              answer->candidates[answer->order[j + 1]].probability);
+}
+
+TEST(Identify, WhoseLightNobodyHasIsAskedOnceAndNotUnasked) {
+  std::vector<std::size_t> asked;
+  ObservedCurve curve = pass(24);
+  observe(curve, AnyBox(202), {any_attitude(2), {}}, 200, 2);
+  IdentifyOptions options = with_own_light(curve, asked);
+  options.own_light = [&asked](std::size_t k) -> Result<std::optional<OwnAnswer>> {
+    asked.push_back(k);
+    return std::optional<OwnAnswer>();
+  };
+  const auto answer = identify(curve, six_boxes().candidates(), options);
+  ASSERT_TRUE(answer) << answer.error().text();
+  std::ranges::sort(asked);
+  EXPECT_EQ(std::ranges::adjacent_find(asked), asked.end());
+  EXPECT_EQ(answer->unasked, 0u);
+}
+
+TEST(Identify, EpochsOfOneCellDoNotRuleOutByATable) {
+  // 60 epochs of a sixtieth of the pass: Sun and observer move by less than a cell of the tables,
+  // all rows share one error of these, and e-folds of sixty rows are worth those of one or two.
+  std::vector<std::size_t> asked;
+  ObservedCurve curve = pass(3600);
+  curve.epochs.resize(60);
+  observe(curve, AnyBox(103), {any_attitude(6), {}}, 200, 3);
+  IdentifyOptions options = with_own_light(curve, asked);
+  options.finalists = options.own = options.own_in_doubt = 1;
+  Candidates four = misled();
+  four.count = 4;
+  const auto answer = identify(curve, four, options);
+  ASSERT_TRUE(answer) << answer.error().text();
+  for (const std::size_t k : {0, 2, 3}) // more than e^30 behind, row by row
+    EXPECT_LT(answer->candidates[k].peak, answer->none_log_evidence - 30);
+  EXPECT_EQ(answer->unasked, 3u);
+  EXPECT_NEAR(answer->none, 0.05 / (0.05 + 3 * 0.95 / 4), 1e-6); // the odds before the data
+}
+
+TEST(Identify, WhatWasCutAndAskedIsNotCut) {
+  // All six are equally far at first sight; room for one, and all are asked since none explains it.
+  std::vector<std::size_t> asked;
+  ObservedCurve curve = pass(24);
+  observe(curve, AnyBox(202), {any_attitude(2), {}}, 200, 2);
+  IdentifyOptions options = with_own_light(curve, asked);
+  Candidates same = six_boxes().candidates();
+  same.lend = [from = same.lend](std::size_t, const LookAtCandidate &look) {
+    return from(0, look);
+  };
+  options.shortlist = options.finalists = options.own = 1;
+  const auto answer = identify(curve, same, options);
+  ASSERT_TRUE(answer) << answer.error().text();
+  EXPECT_EQ(asked.size(), 6u);
+  EXPECT_FALSE(answer->is_cut);
+  options.own_light = {};
+  const auto tables = identify(curve, same, options);
+  ASSERT_TRUE(tables) << tables.error().text();
+  EXPECT_TRUE(tables->is_cut);
 }
 
 TEST(Identify, ErrorsOfALibraryAreHandedOn) {
