@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What each Stokes component adds: the same curves of a cubesat with a panel with I alone, with I and Q, with I, Q and U of the scattering
 plane, by question, phase angle and noise. Truth by rays, noise of photons (equal photons for all three: an ideal simultaneous polarimeter),
-materials known but where they are what is asked. Prints a table in Markdown; a cell has the answers of all trials in three numbers at most.
+materials known but where they are what is asked. Prints a table in Markdown; a cell has the answers of all trials in three numbers at most. A row of I and Q tells u = 0 +- 100, since a table has both or none:
+it counts as a measurement, so that chi-square of those answers has a degree of freedom a row too many and their chance is too large.
 
 usage: ablation.py [--trials 6] [--seed 9] [--snr 10,100] [--questions pose,material,identity] [--phases 40,90] [--umov PATH] [--work DIR]
                    [options of umov invert and identify]
@@ -14,6 +15,7 @@ import json
 import math
 import pathlib
 import random
+import shutil
 import statistics
 import tempfile
 import time
@@ -32,6 +34,7 @@ DATA = ("I", "I,Q", "I,Q,U")
 class Bench:
     def __init__(self, o, work):
         self.o, self.work = o, work
+        shutil.rmtree(work / "lib", ignore_errors=True)  # of another run, perhaps of another umov
         self.right = ["--slope-sd", 0, "--reflectance-sd", 0, "--haze-sd", 0]
         for words, kind in zip(blind.MESH[OBJECT], ("fit", "true")):
             blind.run(o.umov, "mesh", "make", *words, "-o", work / f"{kind}.obj", "-q")

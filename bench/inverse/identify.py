@@ -87,6 +87,8 @@ def main():
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov identify
+    if o.copies < 2:
+        parser.error("--copies: two at least, or there is no object more to be timed")
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     maker = Maker(o, work)
@@ -145,7 +147,7 @@ def index(o, work, maker):
                 path.write_text(path.read_text().replace('set = "paper_rgb"', f"set = {bands}"))
         else:
             scenarios = [maker.write(k) for k in range(o.index)]
-        table, seconds, memory = measured(o.umov, "library", "build", *scenarios, "-o", work / "lib", "--json", *o.rest)
+        table, seconds, memory = measured(o.umov, "library", "build", *scenarios, "-o", work / "lib", "--json")
         print(f"{o.index} objects of {table[0]['poses']} poses, {dict(collections.Counter(row['state'] for row in table))}: {seconds:.1f} s of processors, "
               f"at most {memory:.2f} GB", flush=True)
     (work / "place.toml").write_text(scenarios[0].read_text())
@@ -161,7 +163,7 @@ def index(o, work, maker):
         answers = []
         for threads in (1, 2):
             found, seconds, memory = measured(o.umov, "identify", work / "obs.csv", "--library", library, "--scenario", work / "place.toml",
-                                              "--json", "--threads", threads)
+                                              "--json", "--threads", threads, *o.rest)
             took.setdefault(library, seconds)
             answers.append(found)
             print(f"{found['objects']} objects, {threads} threads: {seconds:.2f} s of processors, at most {memory:.2f} GB; best {found['best']}",

@@ -7,8 +7,12 @@ Needs numpy and the package umov (PYTHONPATH=build/release/python .deps/venv/bin
 follows an attitude: this is the light that one would need, of the draws of samples.ecsv and of the modes with eight points about each (the
 sigma points of attitude and scale; Julier & Uhlmann 1997), not what it would do with it."""
 import argparse
+import contextlib
+import os
 import pathlib
 import random
+import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -65,19 +69,24 @@ def merged(o, job, work):
 
 def killed(o, work, curves):
     """The job in one go, and killed after each of its first shards."""
+    for old in ("whole", "cut"):
+        shutil.rmtree(work / old, ignore_errors=True)
     words = ["invert", "pose", *curves, "--each", "--scenario", work / "fit.toml", *o.rest]
     command = list(map(str, [o.umov, "scale", "run", "-q", "--per-shard", 1, "--workers", 1, "--threads", 1]))
     subprocess.run([*command, str(work / "whole"), *map(str, words)], check=True)
     kills = 0
     for done in range(1, len(curves)):
-        process = subprocess.Popen([*command, str(work / "cut"), *map(str, words)])
+        process = subprocess.Popen([*command, str(work / "cut"), *map(str, words)], start_new_session=True)
         while process.poll() is None and len(list((work / "cut/shards").glob("*.rows"))) < done:
             time.sleep(0.05)
         kills += process.poll() is None
-        process.kill()
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)  # its workers too
         process.wait()
     subprocess.run([*command, str(work / "cut"), *map(str, words)], check=True)
     is_same = merged(o, work / "whole", work) == merged(o, work / "cut", work)
+    if kills < len(curves) - 1:
+        raise SystemExit(f"{o.object}: the job was done before it was killed {len(curves) - 1} times ({kills}): ask more of it, as by --curves")
     print(f"{o.object}, {len(curves)} curves, killed {kills} times: {'the same bytes' if is_same else 'OTHER BYTES'}", flush=True)
 
 

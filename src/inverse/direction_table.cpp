@@ -115,7 +115,7 @@ PoseLighting DirectionTable::lighting(std::shared_ptr<const DirectionTable> tabl
         const DirectionGrid::Corner sun = grid.corner(poses[k].sun);
         const DirectionGrid::Corner observer = grid.corner(poses[k].observer);
         std::size_t first = 0;
-        for (; first + 2 * lanes <= stride; first += 2 * lanes) // three bands at once
+        for (; first + 2 * lanes <= stride; first += 2 * lanes) // up to four bands at once
           look_up<2 * lanes>(light + first, stride, nodes, sun, observer, &sum[first]);
         for (; first < stride; first += lanes)
           look_up<lanes>(light + first, stride, nodes, sun, observer, &sum[first]);
