@@ -39,6 +39,14 @@ Result<std::vector<std::size_t>> columns_in(const std::vector<std::string> &know
   return out;
 }
 
+std::vector<std::string> names_of(const std::vector<Band> &bands) {
+  std::vector<std::string> out;
+  out.reserve(bands.size());
+  for (const Band &band : bands)
+    out.push_back(band.name);
+  return out;
+}
+
 /// Files of a folder, as candidates.
 class Library {
 public:
@@ -113,6 +121,8 @@ public:
 
   /// Which scenario belongs to which object; Usage for one that has none.
   Result<void> assign(const Library &library);
+  /// BadInput for a scenario that lacks a band of the curve, whether or not it will be asked.
+  Result<void> check(const ObservedCurve &curve);
   [[nodiscard]] bool has(std::size_t k) const { return scenarios_.contains(k); }
   Result<std::optional<OwnAnswer>> answer(const Library &library, std::size_t k,
                                           const ObservedCurve &curve, const SearchOptions &search);
@@ -169,6 +179,15 @@ Result<void> OwnLights::assign(const Library &library) {
                   names.size() > most ? fmt::format(" and {} more", names.size() - most) : ""));
 }
 
+Result<void> OwnLights::check(const ObservedCurve &curve) {
+  for (const auto &[k, path] : scenarios_) {
+    UMOV_ASSIGN(scenario, ready_.scenario(path));
+    UMOV_ASSIGN(columns, columns_in(names_of(scenario->bands), curve, path));
+    columns_[k] = columns;
+  }
+  return {};
+}
+
 Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::size_t k,
                                                    const ObservedCurve &curve,
                                                    const SearchOptions &search) {
@@ -177,10 +196,7 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
     return std::optional<OwnAnswer>();
   UMOV_ASSIGN(read, ready_.scenario(named->second));
   const Scenario &scenario = *read;
-  std::vector<std::string> bands;
-  for (const Band &band : scenario.bands)
-    bands.push_back(band.name);
-  UMOV_ASSIGN(columns, columns_in(bands, curve, named->second));
+  const std::vector<std::size_t> &columns = columns_.at(k);
   UMOV_ASSIGN(made, ready_.light(named->second, request_.observed, options_, diagnostics_,
                                  monitor_.cancel));
   const SearchedLight &light = *made;
@@ -192,7 +208,6 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
                       "light is taken as it is now",
                       {named->second});
   lights_[k] = made;
-  columns_[k] = columns;
   const CurveModel model(curve, lighting_of(light.light, options_.threads, monitor_), columns);
   const CurveModel quick(curve, quick_lighting(light, options_.threads, monitor_), columns);
   UMOV_ASSIGN(found, search_pose({model, quick, quick}, search));
@@ -256,6 +271,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   UMOV_ASSIGN(observed, observed_light_curve(scenario, files, request.observed.allow_old_elements,
                                              diagnostics, false));
   const ObservedCurve &curve = observed.curve;
+  UMOV_TRY(own.check(curve));
   IdentifyOptions how;
   how.search = search_options(scenario, request.observed, options, monitor);
   how.search.largest_floor = 0; // evidences of candidates are those of the same errors

@@ -33,6 +33,16 @@ bool is_unlikely(const CandidateFit &best, const CurveErrors &errors) {
          chi2_probability(best.answer.chi2, dof_of(best.answer)) < unlikely;
 }
 
+/// How many objects a quick look alone left behind, which is less sure than a search.
+std::string left_behind(const IdentityAnswer &answer) {
+  const auto count = std::ranges::count_if(answer.candidates, [](const CandidateFit &fit) {
+    return fit.by == JudgedBy::Look && std::isnan(fit.peak);
+  });
+  return count > 0 ? fmt::format("; by a quick look alone {} stayed behind",
+                                 counted(static_cast<std::size_t>(count), "object"))
+                   : "";
+}
+
 /// A probability in words; what is left of e^-700 is no number to tell anybody.
 std::string chance(double probability) {
   constexpr double told = 1e-4;
@@ -145,8 +155,10 @@ std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurv
                               "freedom",
                               printable(best_name(words)), best.answer.chi2, dof));
   if (words.verdict == Verdict::NoFit)
-    out.emplace_back("no object of the library in any attitude explains the data as well as one "
-                     "that is like them but not among them");
+    out.push_back(
+        "no object of the library in any attitude explains the data as well as one that is like "
+        "them but not among them" +
+        left_behind(*words.answer));
   return out;
 }
 

@@ -130,3 +130,11 @@ def test_a_band_that_the_library_lacks(umov, library, tmp_path):
     (tmp_path / "place.toml").write_text(text)
     done = umov("identify", "obs.csv", "--library", "lib", "--scenario", "place.toml")
     assert done.code == 3 and '"nm:500"' in done.err and "nm:550" in done.err
+
+
+def test_a_scenario_of_other_bands_is_told_whoever_leads(umov, scene, library, tmp_path):
+    truth_of(umov, scene, tmp_path, "metal", TRUTHS[1], 100, 1)
+    text = (tmp_path / "white.toml").read_text()
+    (tmp_path / "white.toml").write_text(text.replace('"paper_rgb"', '["nm:500"]'))
+    done = umov("identify", "obs.csv", "--library", "lib", "--scenario", "place.toml", "--objects", "metal.toml", "white.toml")
+    assert done.code == 3 and "white.toml" in done.err and "nm:500" in done.err

@@ -57,6 +57,7 @@ TEST(IdentityWords, ANameIsDeterminedByOwnLightAlone) {
 
 TEST(IdentityWords, NoneIsTheAnswerOnlyWhereNothingIsOpen) {
   EXPECT_EQ(verdict(answer_of(0.99)), Verdict::NoFit);
+  EXPECT_TRUE(is_noted(answer_of(0.99), "by a quick look alone 1 object stayed behind"));
   IdentityAnswer cut = answer_of(0.99), unasked = cut, unsettled = cut;
   cut.is_cut = true;
   EXPECT_EQ(verdict(cut), Verdict::Undetermined);
@@ -71,8 +72,8 @@ TEST(IdentityWords, NoneIsTheAnswerOnlyWhereNothingIsOpen) {
 
 TEST(IdentityWords, AFitThatChanceDoesNotExplainIsNoName) {
   // Of chi-square with 10 degrees of freedom the .999 quantile is 29.588 (tables, NIST/SEMATECH
-  // e-Handbook 1.3.6.7.4); 1 % to either side for the cube root that stands for it (Wilson & Hilferty
-  // 1931).
+  // e-Handbook 1.3.6.7.4); 1 % to either side for the cube root that stands for it (Wilson &
+  // Hilferty 1931).
   IdentityAnswer answer = answer_of(0.01);
   answer.candidates[0].answer.chi2 = 29.588 * 0.99;
   EXPECT_EQ(verdict(answer), Verdict::Determined);
