@@ -348,6 +348,51 @@ TEST(Identify, WhatWasCutAndAskedIsNotCut) {
   EXPECT_TRUE(tables->is_cut);
 }
 
+/// Own light of a given ln evidence, for all, of a fit as good as chance has it in the median.
+IdentifyOptions with_evidence(double log_evidence, bool is_settled) {
+  IdentifyOptions out = quick();
+  out.own_light = [=](std::size_t) -> Result<std::optional<OwnAnswer>> {
+    OwnAnswer own;
+    own.answer.log_evidence = log_evidence;
+    own.answer.chi2 = 100;
+    own.answer.measurements = 101;
+    own.answer.is_settled = is_settled;
+    return std::optional(own);
+  };
+  return out;
+}
+
+TEST(Identify, NoneHasTheKinOfThoseThatAreAskedLate) {
+  ObservedCurve curve = pass(24);
+  observe(curve, AnyBox(202), {any_attitude(2), {}}, 200, 2);
+  IdentifyOptions options = with_evidence(-1e6, true);
+  const auto searched = identify(curve, six_boxes().candidates(), options);
+  options.shortlist = options.own = 1; // no table rules one out: all are asked
+  const auto late = identify(curve, six_boxes().candidates(), options);
+  ASSERT_TRUE(searched && late);
+  // The same six terms in another order: rounding.
+  EXPECT_NEAR(searched->none_log_evidence, late->none_log_evidence, 1e-9);
+  EXPECT_EQ(late->unsettled, 0u);
+}
+
+TEST(Identify, NoneIsOpenWhereASearchNearItDidNotComeToRest) {
+  ObservedCurve curve = pass(24);
+  observe(curve, AnyBox(202), {any_attitude(2), {}}, 200, 2);
+  IdentifyOptions options = with_evidence(-1e6, false);
+  Candidates one = six_boxes().candidates();
+  one.count = 1;
+  const auto far = identify(curve, one, options);
+  ASSERT_TRUE(far);
+  EXPECT_EQ(far->unsettled, 0u);
+  for (const bool is_settled : {false, true}) {
+    options.own_light = with_evidence(far->none_log_evidence - 10, is_settled).own_light;
+    const auto near = identify(curve, one, options);
+    ASSERT_TRUE(near);
+    EXPECT_GT(near->none, 0.95);
+    EXPECT_EQ(near->unsettled, is_settled ? 0u : 1u);
+  }
+}
+
 TEST(Identify, ErrorsOfALibraryAreHandedOn) {
   Candidates broken = six_boxes().candidates();
   broken.lend = [](std::size_t, const LookAtCandidate &) -> Result<void> {
