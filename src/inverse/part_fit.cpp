@@ -240,7 +240,7 @@ void PartFit::jacobian() {
     const double *const factor = &factor_[number * cells_];
     const double *const by_slope = &by_slope_[number * cells_];
     // Derivative of the factor of the part.
-    const auto change = [&](std::size_t cell) {
+    const auto change = [&, is_slope = is_slope](std::size_t cell) {
       return factor[cell] * (is_slope ? by_slope[cell] : part.sd);
     };
     double *const column = jacobian_.col(static_cast<Index>(n)).data();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <umov/inverse/attitude_grid.h>
 
 namespace umov::inverse {
 namespace {
