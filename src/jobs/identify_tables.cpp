@@ -25,12 +25,9 @@ const std::string &best_name(const IdentityWords &words) {
   return words.names[best_searched(*words.answer)];
 }
 
-/// The best fit of own light misses the data by more than chance explains: as `invert` has it, one
-/// that fits may have been passed by. Where rows may be outliers chi-square says less.
-bool is_unlikely(const CandidateFit &best, const CurveErrors &errors) {
-  constexpr double unlikely = 1e-3;
-  return best.by == JudgedBy::Model && errors.outlier_share == 0 && dof_of(best.answer) > 0 &&
-         chi2_probability(best.answer.chi2, dof_of(best.answer)) < unlikely;
+/// That of the best fit of own light: tables are wrong by some per cent anyway.
+std::optional<double> chance_of_bad_own_fit(const CandidateFit &best, const CurveErrors &errors) {
+  return best.by == JudgedBy::Model ? chance_of_bad_fit(best.answer, errors) : std::nullopt;
 }
 
 /// How many objects a quick look alone left behind, which is less sure than a search.
@@ -111,7 +108,7 @@ Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve,
   if (!is_open && answer.unsettled == 0 && answer.none > sure && curve.epochs.size() > 1)
     return Verdict::NoFit;
   if (is_steady(curve, errors) || is_open || answer.none > best.probability ||
-      is_unlikely(best, errors))
+      chance_of_bad_own_fit(best, errors))
     return Verdict::Undetermined;
   // A table knows an object to some per cent: what is like it as closely takes its name.
   const bool has_own = best.by == JudgedBy::Model;
@@ -144,11 +141,12 @@ std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurv
                     "may be there, and it is not sure that it is none of these",
                     counted(words.answer->unsettled, "object")));
   const double dof = dof_of(best.answer);
-  if (words.verdict == Verdict::Undetermined && is_unlikely(best, errors))
+  const auto by_chance = chance_of_bad_own_fit(best, errors);
+  if (words.verdict == Verdict::Undetermined && by_chance)
     out.push_back(fmt::format("the best fit misses the data by more than their errors (chance "
                               "{:.1g}): a better one may have been passed by, or errors and "
                               "--floor are too small, so the name is not sure",
-                              chi2_probability(best.answer.chi2, dof)));
+                              *by_chance));
   constexpr double unlikely = 1e-6;
   if (best.answer.chi2 > 2 * dof && chi2_probability(best.answer.chi2, dof) < unlikely)
     out.push_back(fmt::format("{} explains the data badly: chi-square {:.4g} of {:.0f} degrees of "

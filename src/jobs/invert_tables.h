@@ -42,6 +42,12 @@ Families families_of(const PoseAnswer &answer, const std::vector<BodySymmetry> &
 /// What an answer is worth.
 Verdict verdict_of(const PoseAnswer &answer, const Families &families);
 
+/// The chance of a best fit as bad as this one, where it is below .001. Such a fit is either not
+/// the best there is (a spin that a search passed by had a chi-square 100 lower,
+/// bench/inverse/blind_set.py), or its errors are too small. Nothing where rows may be outliers, of
+/// which chi-square says less.
+std::optional<double> chance_of_bad_fit(const PoseAnswer &answer, const CurveErrors &errors);
+
 /// Everything that the summary and verdict.json say.
 struct Judgement {
   Verdict verdict = Verdict::Undetermined;

@@ -91,25 +91,28 @@ void doubt_model(double model_error, double floor, Judgement &out) {
     out.verdict = Verdict::Undetermined;
 }
 
-/// A best fit that chance does not explain is either not the best there is (a spin that the search
-/// passed by had a chi-square 100 lower, bench/inverse/blind_set.py), or its errors are too small.
 void doubt_fit(const PoseAnswer &answer, const CurveErrors &errors, Judgement &out) {
-  constexpr double unlikely = 1e-3;
-  const double dof =
-      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
-  if (out.verdict != Verdict::Determined || !(dof > 0) || errors.outlier_share > 0)
-    return;
-  const double chance = chi2_probability(answer.chi2, dof);
-  if (!(chance < unlikely))
+  const auto chance = chance_of_bad_fit(answer, errors);
+  if (out.verdict != Verdict::Determined || !chance)
     return;
   out.verdict = Verdict::Undetermined;
   out.notes.push_back(fmt::format("the best fit misses the data by more than their errors (chance "
                                   "{:.1g}): one that fits may have been passed by, or errors and "
                                   "--floor are too small, so this one is not sure",
-                                  chance));
+                                  *chance));
 }
 
 } // namespace
+
+std::optional<double> chance_of_bad_fit(const PoseAnswer &answer, const CurveErrors &errors) {
+  constexpr double unlikely = 1e-3;
+  const double dof =
+      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+  if (!(dof > 0) || errors.outlier_share > 0)
+    return {};
+  const double chance = chi2_probability(answer.chi2, dof);
+  return chance < unlikely ? std::optional(chance) : std::nullopt;
+}
 
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
                 const std::vector<BodySymmetry> &symmetries) {
