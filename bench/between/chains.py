@@ -78,10 +78,10 @@ def joints():
 
 HST = {"array_front": "silicon", "array_back": "gold", "forward_shell": "smooth", "aft_shroud": "gold",
        "antenna": "aluminium", "array_frame": "aluminium", "door": "aluminium", "equipment": "aluminium",
-       "handrail": "aluminium", "light_shield": "aluminium"}
+       "handrail": "aluminium", "light_shield": "aluminium", "baffle": "aluminium"}
 # As in examples/hst_maui.toml.
-LIBRARY = {"light_shield": "film_aluminized", "forward_shell": "film_aluminized", "equipment": "film_silvered",
-           "aft_shroud": "film_silvered", "door": "film_aluminized", "array_front": "cell_silicon",
+LIBRARY = {"light_shield": "film_aluminized", "baffle": "paint_black", "forward_shell": "film_aluminized",
+           "equipment": "film_silvered", "aft_shroud": "film_silvered", "door": "film_aluminized", "array_front": "cell_silicon",
            "array_back": "mli_kapton", "array_frame": "aluminium_anodized", "antenna": "paint_white",
            "handrail": "paint_white"}
 BOX_WING = {"bus": "gold", "panels": "silicon", "dish": "aluminium", "tank": "smooth"}

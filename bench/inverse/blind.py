@@ -21,7 +21,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MATERIALS = {
-    "hst": dict(light_shield="film_aluminized", forward_shell="film_aluminized", equipment="film_silvered",
+    "hst": dict(light_shield="film_aluminized", baffle="paint_black", forward_shell="film_aluminized", equipment="film_silvered",
                 aft_shroud="film_silvered", door="film_aluminized", array_front="cell_silicon", array_back="mli_kapton",
                 array_frame="aluminium_anodized", antenna="paint_white", handrail="paint_white"),
     "agena": dict(nozzle_titanium="titanium", rack_aluminium="aluminium", tank_aluminium="aluminium",

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """umov and Mitsuba's polarized variant with light between surfaces: poses per second at equal error.
 
-    bench/peers/run bounces [--umov PATH] [--poses N] [--facets N] [--surfaces N] [--accuracy A] [--kind K] [--many N] [--alpha A]
+    bench/peers/run bounces [--umov PATH] [--poses N] [--facets N] [--surfaces N] [--accuracy A] [--kind K] [--many N] [--alpha A | --paints]
 
-Both light the same box-wing (separable GGX, four metals, flat normals) by the Sun, up to N surfaces: in random
+Both light the same box-wing (separable GGX, four metals or, with --paints, a binder of n = 1.5 over bodies of four reflectances;
+flat normals) by the Sun, up to N surfaces: in random
 geometries, in many of them (as of a library), and in a series, as of a body that turns by half a degree from one sample to the
 next. umov shares paths between the poses of a series, and chains between many; Mitsuba treats all alike, so its rate and errors
 are those of every eighth pose of a series, and of many the first.
@@ -25,7 +26,7 @@ import numpy as np
 from compare import (MATERIALS, WAVELENGTHS, index_values, machine, random_geometries, rays_for, read_groups, umov,
                      umov_stokes, write_geometry, write_scenario)
 
-
+PAINTS = {"bus": (1.5, 0.30, 0.8), "panels": (1.5, 0.10, 0.05), "tank": (1.5, 0.15, 0.5), "dish": (1.5, 0.25, 0.8)}
 QUANTILES = {"median": 0.5, "90 %": 0.9, "95 %": 0.95}
 
 
@@ -134,15 +135,20 @@ def main():
     parser.add_argument("--surfaces", type=int, default=5)
     parser.add_argument("--accuracy", type=float, nargs=2, default=[0.005, 0.02], help="of both, as umov is asked")
     parser.add_argument("--kind", choices=["random", "many", "series", "all"], default="all")
-    parser.add_argument("--alpha", type=float, help="of all lobes, instead of their own")
+    surfaces = parser.add_mutually_exclusive_group()
+    surfaces.add_argument("--alpha", type=float, help="of all lobes, instead of their own")
+    surfaces.add_argument("--paints", action="store_true", help="instead of metals")
     options = parser.parse_args()
-    options.lobes = {group: (index, options.alpha or alpha) for group, (index, alpha) in MATERIALS.items()}
+    options.lobes = PAINTS if options.paints else {group: (index, options.alpha or alpha) for group, (index, alpha) in MATERIALS.items()}
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         mesh = os.path.join(folder, "box-wing.obj")
         umov(options.umov, "mesh", "make", "box-wing", "--facets", options.facets, "-o", mesh)
         materials = {}
-        for group, (index, alpha) in options.lobes.items():
+        for group, (index, alpha, *body) in options.lobes.items():
+            if body:
+                materials[group] = {"alpha": alpha, "n": index, "body": body[0]}
+                continue
             n, k = index_values(options.umov, index, WAVELENGTHS[1])
             materials[group] = {"alpha": alpha, "n": n, "k": k}
 

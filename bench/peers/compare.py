@@ -58,9 +58,11 @@ def write_scenario(folder, bands, of=MATERIALS):
     lines = ["umov = 1", "[[object]]", 'name = "box-wing"',
              'mesh = { file = "box-wing.obj", unit = "m", up = "+Z" }', "[object.materials]"]
     lines += [f'{group} = "peer_{group}"' for group in MATERIALS]
-    for group, (index, alpha) in of.items():
-        lines += [f"[material.peer_{group}]", f'index = "{index}"',
+    for group, (index, alpha, *body) in of.items():
+        known = f"{{ n = {index}, k = 0 }}" if body else f'"{index}"'
+        lines += [f"[material.peer_{group}]", f"index = {known}",
                   f'distribution = {{ model = "ggx", alpha = {alpha} }}', 'shadowing = "separable"']
+        lines += [f"body = {{ reflectance = {reflectance}, polarized = true }}" for reflectance in body]
     names = ", ".join(f'"nm:{w}"' for w in WAVELENGTHS[bands])
     lines += ["[bands]", f"set = [{names}]"]
     path = os.path.join(folder, f"box-wing-{bands}.toml")

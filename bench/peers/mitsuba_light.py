@@ -16,7 +16,8 @@ import numpy as np
 class MitsubaScene:
     def __init__(self, mesh_groups, materials, wavelengths_nm):
         """mesh_groups: {name: (vertices, triangles)}; materials: {name: {"alpha", "n", "k"}} with n and k
-        as a list over wavelengths_nm (one: a monochrome variant; up to four: one spectral lane each)."""
+        as a list over wavelengths_nm (one: a monochrome variant; up to four: one spectral lane each), or
+        {"alpha", "n", "body"}: a polarized plastic of that index over a body of that reflectance."""
         import drjit
         import mitsuba
 
@@ -55,6 +56,9 @@ class MitsubaScene:
                 "values": ", ".join(f"{v:.9g}" for v in values)}
 
     def _bsdf(self, material):
+        if "body" in material:
+            return {"type": "twosided", "bsdf": {"type": "pplastic", "distribution": "ggx", "alpha": material["alpha"],
+                                                 "int_ior": material["n"], "diffuse_reflectance": self._spectrum([material["body"]])}}
         conductor = {"type": "roughconductor", "distribution": "ggx", "alpha": material["alpha"],
                      "eta": self._spectrum(material["n"]), "k": self._spectrum(material["k"])}
         return {"type": "twosided", "bsdf": conductor}

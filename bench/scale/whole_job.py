@@ -25,6 +25,14 @@ from scenes import SITES, UMOV, catalogue, cubesat, load, lock, umov
 SHAPES = (("cubesat", "--units", 3, "--panels", 2), ("hst",), ("agena",), ("rocket-body",), ("box-wing",))
 
 
+def is_worker(process):
+    try:
+        words = " ".join(process.cmdline())
+    except psutil.Error:  # it has ended, of its own accord or by the last kill
+        return False
+    return "scale worker" in words or "spawn_main" in words
+
+
 class Killer:
     """Kills a worker process below this one every so many seconds, once something is done."""
 
@@ -44,8 +52,7 @@ class Killer:
                 if any(pathlib.Path(self.folder, "shards").iterdir()):
                     next_kill = now + 0.3  # something is at work: the first goes at once
             elif now > next_kill:
-                below = [p for p in psutil.Process().children(recursive=True)
-                         if any(word in " ".join(p.cmdline()) for word in ("scale worker", "spawn_main"))]
+                below = [p for p in psutil.Process().children(recursive=True) if is_worker(p)]
                 if below:
                     below[self.killed % len(below)].kill()
                     self.killed += 1

@@ -9,7 +9,7 @@ import umov
 hst = umov.Satellite(mesh=umov.example("hst.obj"), unit="m", up="+Z", normals="smooth", orbit=umov.example("hst.tle"),
                      attitude={"point": "+Z", "at": {"ra_deg": 83.8, "dec_deg": -5.4}, "then": "+X", "toward": "sun"},
                      materials={"array_front": "cell_silicon", "array_back": "mli_kapton", "antenna": "paint_white",
-                                "light_shield": "film_aluminized", "forward_shell": "film_aluminized",
+                                "light_shield": "film_aluminized", "baffle": "paint_black", "forward_shell": "film_aluminized",
                                 "default": "aluminium_anodized"}, name="HST")
 
 # %% [markdown]

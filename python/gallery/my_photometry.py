@@ -22,7 +22,7 @@ def telescope(shield: str) -> umov.Satellite:
     return umov.Satellite(mesh=umov.example("hst.obj"), unit="m", up="+Z", normals="smooth", orbit=umov.example("hst.tle"),
                           attitude={"point": "+Z", "at": {"ra_deg": 83.8, "dec_deg": -5.4}, "then": "+X", "toward": "sun"},
                           materials={"array_front": "cell_silicon", "array_back": "mli_kapton", "antenna": "paint_white",
-                                     "default": shield}, name="HST")
+                                     "baffle": "paint_black", "default": shield}, name="HST")
 
 
 # %% [markdown]

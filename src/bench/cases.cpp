@@ -54,12 +54,17 @@ Result<Mesh> case_mesh(const BenchCase &of, Diagnostics &diagnostics) {
 
 /// Of each group of the telescope.
 Result<std::vector<Material>> telescope_materials(const Mesh &mesh) {
-  const std::map<std::string, const char *> names{
-      {"light_shield", "film_aluminized"}, {"forward_shell", "film_aluminized"},
-      {"equipment", "film_silvered"},      {"aft_shroud", "film_silvered"},
-      {"door", "film_aluminized"},         {"array_front", "cell_silicon"},
-      {"array_back", "mli_kapton"},        {"array_frame", "aluminium_anodized"},
-      {"antenna", "paint_white"},          {"handrail", "paint_white"}};
+  const std::map<std::string, const char *> names{{"light_shield", "film_aluminized"},
+                                                  {"baffle", "paint_black"},
+                                                  {"forward_shell", "film_aluminized"},
+                                                  {"equipment", "film_silvered"},
+                                                  {"aft_shroud", "film_silvered"},
+                                                  {"door", "film_aluminized"},
+                                                  {"array_front", "cell_silicon"},
+                                                  {"array_back", "mli_kapton"},
+                                                  {"array_frame", "aluminium_anodized"},
+                                                  {"antenna", "paint_white"},
+                                                  {"handrail", "paint_white"}};
   std::vector<Material> out;
   for (const std::string &group : mesh.groups) {
     const auto named = names.find(group);

@@ -22,16 +22,13 @@ template <class T> T must(Result<T> result) {
   return std::move(*result);
 }
 
-const std::map<std::string, std::string> hst_materials{{"light_shield", "paper_al"},
-                                                       {"forward_shell", "paper_mylar"},
-                                                       {"equipment", "paper_al"},
-                                                       {"aft_shroud", "paper_al"},
-                                                       {"door", "paper_al"},
-                                                       {"array_front", "paper_asi"},
-                                                       {"array_back", "paper_mylar"},
-                                                       {"array_frame", "paper_al"},
-                                                       {"antenna", "paper_spectralon"},
-                                                       {"handrail", "paper_au"}};
+const std::map<std::string, std::string> hst_materials{
+    {"light_shield", "paper_al"},     {"baffle", "paper_al"},
+    {"forward_shell", "paper_mylar"}, {"equipment", "paper_al"},
+    {"aft_shroud", "paper_al"},       {"door", "paper_al"},
+    {"array_front", "paper_asi"},     {"array_back", "paper_mylar"},
+    {"array_frame", "paper_al"},      {"antenna", "paper_spectralon"},
+    {"handrail", "paper_au"}};
 const std::map<std::string, std::string> agena_materials{
     {"nozzle_titanium", "paper_al"}, {"rack_aluminium", "paper_al"},
     {"tank_aluminium", "paper_al"},  {"paint_white", "paper_spectralon"},

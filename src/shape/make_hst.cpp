@@ -19,7 +19,8 @@ constexpr double mid = total_length / 2; ///< the origin
 
 void add_tube(MeshBuilder &b, std::size_t sides) {
   const std::uint32_t shroud = b.group("aft_shroud"), equipment = b.group("equipment"),
-                      shell = b.group("forward_shell"), shield = b.group("light_shield");
+                      shell = b.group("forward_shell"), shield = b.group("light_shield"),
+                      baffle = b.group("baffle");
   const std::vector<Outline> outline{{-mid, 0},
                                      {-mid, wide_radius},
                                      {shroud_top - mid, wide_radius},
@@ -31,7 +32,7 @@ void add_tube(MeshBuilder &b, std::size_t sides) {
                                      {first_baffle - mid, narrow_radius - wall},
                                      {first_baffle - mid, 0}};
   const std::vector<std::uint32_t> groups{shroud, shroud, equipment, equipment, shell,
-                                          shield, shield, shield,    shield};
+                                          shield, shield, baffle,    baffle};
   b.revolve(outline, sides, {}, [&](std::size_t segment, std::size_t) { return groups[segment]; });
 }
 

@@ -123,7 +123,7 @@ OBJECTS = {
     "hst": (["hst"],
             {"array_front": "silicon", "array_back": "gold", "forward_shell": "smooth", "aft_shroud": "gold",
              "antenna": "aluminium", "array_frame": "aluminium", "door": "aluminium", "equipment": "aluminium",
-             "handrail": "aluminium", "light_shield": "aluminium"}),
+             "handrail": "aluminium", "light_shield": "aluminium", "baffle": "aluminium"}),
 }
 
 

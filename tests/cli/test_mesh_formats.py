@@ -97,7 +97,7 @@ mesh = {{ file = "{file}"{frame}, normals = "{normals}" }}
 [bands]
 set = ["nm:550"]
 """
-MATERIALS = 'array_front = "paper_asi"\nforward_shell = "paper_mylar"\nlight_shield = "paper_au"\ndefault = "paper_al"'
+MATERIALS = 'array_front = "paper_asi"\nforward_shell = "paper_mylar"\nlight_shield = "paper_au"\nbaffle = "paper_au"\ndefault = "paper_al"'
 
 
 def signature(umov, tmp_path, file, normals="flat", materials='default = "paper_al"', frame=True, more=""):

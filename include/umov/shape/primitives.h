@@ -21,8 +21,9 @@ Mesh make_chamfered_cube(double edge_m, double chamfer_m);
 /// Ellipsoid with semi-axes a, b, c along x, y, z, exact vertex normals; group "cigar".
 Mesh make_ellipsoid(double a_m, double b_m, double c_m, std::size_t facets);
 /// Hubble Space Telescope from published dimensions (data/mesh/README.md). +z along the boresight,
-/// origin at the middle of the tube, wings along x. Groups: light_shield, forward_shell, equipment,
-/// aft_shroud, door, array_front, array_back, array_frame, antenna, handrail.
+/// origin at the middle of the tube, wings along x. Groups: light_shield, baffle (its inside),
+/// forward_shell, equipment, aft_shroud, door, array_front, array_back, array_frame, antenna,
+/// handrail.
 struct HstOptions {
   double array_angle_rad = 0; ///< both wings about their boom (x); 0: cells face +z
   double door_angle_rad = 105 * 3.14159265358979323846 / 180; ///< 0: closed
