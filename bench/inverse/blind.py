@@ -161,7 +161,7 @@ def main():
     parser.add_argument("--wrong", type=float, default=0)
     parser.add_argument("--only", type=int, help="of the trials, this one alone (the others' curves are made, for the same noise)")
     parser.add_argument("--truth", choices=["rays", "mitsuba"], default="rays")
-    parser.add_argument("--surfaces", type=int, default=1, help="that the light of the truth touches at most; of the fit 1")
+    parser.add_argument("--surfaces", type=int, default=1, help="that the light of the truth touches at most; of the fit: --set render.bounces=N")
     parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert

@@ -208,7 +208,7 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
                       "light is taken as it is now",
                       {named->second});
   lights_[k] = made;
-  const CurveModel model(curve, lighting_of(light.light, options_.threads, monitor_), columns);
+  const CurveModel model(curve, whole_lighting(light, options_.threads, monitor_), columns);
   const CurveModel quick(curve, quick_lighting(light, options_.threads, monitor_), columns);
   UMOV_ASSIGN(found, search_pose({model, quick, quick}, search));
   used_[k] = light_used(light, scenario, diagnostics_);
@@ -224,7 +224,9 @@ Result<void> OwnLights::doubt(std::size_t k, const ObservedCurve &curve, const P
   UMOV_ASSIGN(share, share_between(*scenario, *lights_.at(k), curve, pose.modes.front().turning,
                                    options_, monitor_));
   words.light_between = share;
-  doubt_direct_light(share, request_.observed.errors.floor, words.verdict, words.notes);
+  words.is_between_fitted = lights_.at(k)->between.has_value();
+  if (!words.is_between_fitted)
+    doubt_direct_light(share, request_.observed.errors.floor, words.verdict, words.notes);
   return {};
 }
 
@@ -296,7 +298,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   pose.errors = errors;
   Table fit;
   if (const SearchedLight *light = own.light(best)) {
-    const CurveModel model(curve, lighting_of(light->light, options.threads, monitor),
+    const CurveModel model(curve, whole_lighting(*light, options.threads, monitor),
                            own.columns(best));
     fit = fit_table(observed, model, pose);
     out.light = own.used(best);

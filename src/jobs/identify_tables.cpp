@@ -232,6 +232,7 @@ std::string json_of(const IdentityWords &words, const std::string &library) {
     out["light_between"] = *words.light_between;
   else
     out["light_between"] = nullptr;
+  out["light_between_fitted"] = words.is_between_fitted;
   out["by"] = name_of(best_of(words).by);
   ordered_json rows = ordered_json::array();
   for (const std::size_t k : answer.order)

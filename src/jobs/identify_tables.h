@@ -15,6 +15,7 @@ struct IdentityWords {
   std::vector<std::string> notes;
   /// What the own light of the best leaves out, if it was asked.
   std::optional<double> light_between = {};
+  bool is_between_fitted = false;
 };
 
 /// The name of the row that stands for none of the library.

@@ -42,21 +42,24 @@ std::vector<Pose> some_poses(const ObservedCurve &curve, const Turning &at) {
 
 } // namespace
 
-Result<std::optional<double>> share_between(const Scenario &scenario, const SearchedLight &ready,
-                                            const ObservedCurve &curve, const Turning &at,
-                                            const JobOptions &options, const Monitor &monitor) {
-  if (scenario.light.bounces > 1)
-    return std::nullopt;
+Result<double> share_between(const Scenario &scenario, const SearchedLight &ready,
+                             const ObservedCurve &curve, const Turning &at,
+                             const JobOptions &options, const Monitor &monitor) {
   if (ready.light.model().facts().is_convex)
     return 0.0;
-  UMOV_ASSIGN(whole, whole_light(*ready.whole, scenario, options, monitor));
   const std::vector<Pose> poses = some_poses(curve, at);
   LightTask task;
   task.threads = options.threads;
   task.cancel = monitor.cancel;
   StokesTable all, direct;
-  if (monitor.is_cancelled() || !whole->evaluate(poses, all, task) ||
-      !ready.light.evaluate(poses, direct, task))
+  bool is_lit = !monitor.is_cancelled() && ready.light.evaluate(poses, direct, task);
+  if (ready.between) { // its table has these poses by now
+    is_lit = is_lit && whole_lighting(ready, options.threads, monitor)(poses, all);
+  } else {
+    UMOV_ASSIGN(whole, whole_light(*ready.whole, scenario, options, monitor));
+    is_lit = is_lit && whole->evaluate(poses, all, task);
+  }
+  if (!is_lit)
     return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
   std::vector<double> shares;
   for (std::size_t k = 0; k < all.i.size(); ++k)
@@ -67,17 +70,18 @@ Result<std::optional<double>> share_between(const Scenario &scenario, const Sear
   return median_of(std::move(shares));
 }
 
-void doubt_direct_light(std::optional<double> share, double floor, Verdict &verdict,
+void doubt_direct_light(double share, double floor, Verdict &verdict,
                         std::vector<std::string> &notes) {
   constexpr double much = 2.5, least = 0.005; // as of what the best attitude misses
   const double allowed = std::max(floor, least);
-  if (!share || !(*share > allowed))
+  if (!(share > allowed))
     return;
   notes.push_back(fmt::format(
       "light from surface to surface, which this fit leaves out, would be {:.2g} of I in the best "
-      "attitude (in the median): more than --floor {:.2g}, so the set may lie beside the truth",
-      *share, floor));
-  if (*share > much * allowed && verdict == Verdict::Determined)
+      "attitude (in the median): more than --floor {:.2g}, so the set may lie beside the truth; "
+      "--set render.bounces=4 has it in the fit",
+      share, floor));
+  if (share > much * allowed && verdict == Verdict::Determined)
     verdict = Verdict::Undetermined;
 }
 
@@ -90,7 +94,9 @@ Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &r
   UMOV_ASSIGN(
       share, share_between(scenario, ready, curve, answer.modes.front().turning, options, monitor));
   out.light_between = share;
-  doubt_direct_light(share, request.errors.floor, out.verdict, out.notes);
+  out.is_between_fitted = ready.between.has_value();
+  if (!out.is_between_fitted)
+    doubt_direct_light(share, request.errors.floor, out.verdict, out.notes);
   return {};
 }
 

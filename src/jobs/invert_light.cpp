@@ -1,6 +1,8 @@
 #include "jobs/invert_light.h"
 
 #include <algorithm>
+#include <umov/light/point_budget.h>
+#include <utility>
 
 namespace umov::jobs {
 
@@ -19,25 +21,62 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
   return Prepared{std::move(light), std::move(observed)};
 }
 
+namespace {
+
+/// Light between surfaces for a table: none of a body that is convex.
+Result<std::optional<LightBetween>>
+prepare_between(const Scenario &scenario, const InvertRequest &request, const SearchedLight &direct,
+                const JobOptions &options, const std::atomic<bool> *cancel) {
+  const LightModel &model = direct.light.model();
+  if (scenario.light.bounces <= 1 || model.facts().is_convex)
+    return std::nullopt;
+  Scenario with = scenario;
+  with.light.max_points = most_points::of_a_node;
+  SignatureRequest rough;
+  rough.method = request.method == LightMethod::Rays ? LightMethod::Rays : LightMethod::Masks;
+  rough.accuracy = 0.05; // a pose has the mean of sixteen nodes
+  rough.between = scenario.light.between;
+  if (rough.between == BetweenMethod::Auto)
+    rough.between = BetweenMethod::Chains;
+  JobOptions by_processor = options; // cards trace no rays
+  by_processor.device = {};
+  Diagnostics twice; // the object was read before: its warnings are known
+  UMOV_ASSIGN(whole, PoseLight::make(with, rough, by_processor, twice, cancel));
+  if (rough.method == LightMethod::Masks && model.facts().method != LightMethod::Rays)
+    whole.model().take_masks_of(direct.masks ? direct.masks->model() : model);
+  const bool is_reciprocal = model.joints().empty();
+  const double sun_radius_rad = whole.sun_radius_rad();
+  constexpr std::size_t fine = 36, coarse = 12; // 5 deg and 15 deg
+  return LightBetween{std::move(whole),
+                      std::make_shared<BetweenTable>(fine, sun_radius_rad, is_reciprocal),
+                      std::make_shared<BetweenTable>(coarse, sun_radius_rad, is_reciprocal)};
+}
+
+} // namespace
+
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
                                     const JobOptions &options, Diagnostics &diagnostics,
                                     const std::atomic<bool> *cancel) {
+  Scenario direct = scenario;
+  direct.light.bounces = 1; // what goes between surfaces has tables of its own
   SignatureRequest lit;
   lit.method = request.method;
   // Light need not be known better than the model is.
   constexpr double coarsest = 0.02;
   lit.accuracy = std::max(scenario.light.accuracy, std::min(request.errors.floor, coarsest));
-  UMOV_ASSIGN(light, PoseLight::make(scenario, lit, options, diagnostics, cancel));
-  SearchedLight out{std::move(light), {}, {}};
+  UMOV_ASSIGN(light, PoseLight::make(direct, lit, options, diagnostics, cancel));
+  SearchedLight out{std::move(light), {}};
   if (out.light.model().facts().method == LightMethod::Auto) {
     SignatureRequest rough;
     rough.method = LightMethod::Masks;
     rough.accuracy = lit.accuracy;
     Diagnostics twice;
-    UMOV_ASSIGN(masks, PoseLight::make(scenario, rough, options, twice, cancel));
+    UMOV_ASSIGN(masks, PoseLight::make(direct, rough, options, twice, cancel));
     out.masks.emplace(std::move(masks));
     out.light.model().take_masks_of(out.masks->model());
   }
+  UMOV_ASSIGN(between, prepare_between(scenario, request, out, options, cancel));
+  out.between = std::move(between);
   return out;
 }
 
@@ -45,12 +84,12 @@ void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOpt
                 Diagnostics &diagnostics, const std::atomic<bool> *cancel) {
   if (!request.materials.is_any())
     return;
-  if (request.method != LightMethod::Rays && ready.light.options().bounces <= 1)
+  if (request.method != LightMethod::Rays)
     ready.parts = LightByPart::make((ready.masks ? *ready.masks : ready.light).model(),
                                     request.materials, options, cancel);
   if (!ready.parts && !is_stopped(cancel))
     diagnostics.warn("the light of this object cannot be taken apart by material (rays alone, "
-                     "light between surfaces, parts that turn, measured or brushed surfaces): "
+                     "parts that turn, measured or brushed surfaces): "
                      "roughness and reflectance are taken for right");
 }
 
@@ -84,22 +123,62 @@ PoseLighting lighting_by_part(const LightByPart &parts, bool is_quick, unsigned 
   };
 }
 
+/// What nobody has asked the tables for before, a minute's work now and then: told as it goes.
+PoseLighting lighting_between(const PoseLight &whole, unsigned threads, const Monitor &monitor) {
+  return [&whole, threads, &monitor](std::span<const Pose> poses, StokesTable &out) {
+    constexpr std::size_t block = 1u << 10;
+    const PoseLighting light = lighting_of(whole, threads, monitor);
+    StokesTable some;
+    out = {};
+    for (std::size_t begin = 0; begin < poses.size(); begin += block) {
+      monitor.advance("light between surfaces", begin, poses.size());
+      if (!light(poses.subspan(begin, std::min(block, poses.size() - begin)), some))
+        return false;
+      out.bands = some.bands;
+      out.indirect.insert(out.indirect.end(), some.indirect.begin(), some.indirect.end());
+    }
+    return true;
+  };
+}
+
+PoseLighting with_between(PoseLighting direct, const LightBetween &between,
+                          const std::shared_ptr<BetweenTable> &table, unsigned threads,
+                          const Monitor &monitor) {
+  return BetweenTable::lighting(std::move(direct),
+                                lighting_between(between.whole, threads, monitor), table, threads);
+}
+
 } // namespace
 
 PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,
                                const Monitor &monitor) {
   if (!ready.parts)
-    return lighting_of(ready.light, threads, monitor);
-  return lighting_by_part(*ready.parts, false, threads, monitor);
+    return whole_lighting(ready, threads, monitor);
+  PoseLighting direct = lighting_by_part(*ready.parts, false, threads, monitor);
+  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->fine,
+                                      threads, monitor)
+                       : direct;
+}
+
+PoseLighting whole_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+  PoseLighting direct = lighting_of(ready.light, threads, monitor);
+  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->fine,
+                                      threads, monitor)
+                       : direct;
 }
 
 PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
   if (!ready.parts)
     return quick_lighting(ready, threads, monitor);
-  return lighting_by_part(*ready.parts, true, threads, monitor);
+  PoseLighting direct = lighting_by_part(*ready.parts, true, threads, monitor);
+  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->coarse,
+                                      threads, monitor)
+                       : direct;
 }
 
-PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+namespace {
+
+PoseLighting direct_by_masks(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
   if (!ready.masks)
     return lighting_of(ready.light, threads, monitor);
   return [masks = lighting_of(*ready.masks, threads, monitor)](std::span<const Pose> poses,
@@ -108,6 +187,15 @@ PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const 
     out.i_err.clear();
     return is_whole;
   };
+}
+
+} // namespace
+
+PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+  PoseLighting direct = direct_by_masks(ready, threads, monitor);
+  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->coarse,
+                                      threads, monitor)
+                       : direct;
 }
 
 PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor &monitor) {

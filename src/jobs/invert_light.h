@@ -5,6 +5,7 @@
 
 #include <mutex>
 #include <optional>
+#include <umov/inverse/between_table.h>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/pose_light.h>
 
@@ -16,10 +17,17 @@ struct WholeLight {
   std::mutex making;
   std::optional<PoseLight> light;
 };
+/// Light between surfaces, where the scenario asks for it (`render.bounces`).
+struct LightBetween {
+  PoseLight whole;
+  /// For the last steps, and for the search.
+  std::shared_ptr<BetweenTable> fine, coarse;
+};
 /// Light of an object as a search wants it.
 struct SearchedLight {
   PoseLight light;
-  std::optional<PoseLight> masks; ///< for the search, where `light` mends them; else none
+  std::optional<PoseLight> masks;           ///< for the search, where `light` mends them; else none
+  std::optional<LightBetween> between = {}; ///< beside `light`, which is direct
   /// The light of `light` by material, where that is not quite known and can be taken apart.
   std::unique_ptr<LightByPart> parts = {};
   /// What `share_between` asks.
@@ -46,11 +54,14 @@ void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOpt
 /// it.
 PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,
                                const Monitor &monitor);
+/// The same light without parts.
+PoseLighting whole_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor);
 /// The same for the first fits and for what is far from the peaks: masks as they are.
 PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor);
 /// Those parts; none where the materials are known.
 std::vector<PartKind> parts_of(const SearchedLight &ready);
-/// `light` and `monitor` must outlive it.
+/// Light that was made once, without what goes between surfaces. `light` and `monitor` must outlive
+/// it.
 PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor &monitor);
 /// Light for a search: masks as they are, without half-widths, where the last steps mend them. What
 /// masks say of themselves is the most that they may miss, thirty times what they do miss where a

@@ -58,6 +58,7 @@ struct Judgement {
   std::vector<Parameter> nuisances;
   std::vector<double> fitted; ///< of those that are parts of the light, the last ones: [sd]
   std::optional<double> light_between; ///< `share_between` of the best attitude, if it was asked
+  bool is_between_fitted = false;      ///< the search had that light
 };
 /// All of it, of an answer.
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,

@@ -181,6 +181,7 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
     out["light_between"] = *judgement.light_between;
   else
     out["light_between"] = nullptr;
+  out["light_between_fitted"] = judgement.is_between_fitted;
   out["axis_spread_deg"] = judgement.axis_spread_deg;
   ordered_json modes = ordered_json::array();
   for (const PoseMode &mode : answer.modes) {
@@ -236,8 +237,9 @@ std::string what_it_rests_on(const Judgement &judgement) {
                           "--reflectance-sd and --haze-sd, and for a shape that is right to --floor"
                         : "- this holds for materials and a shape that are right to --floor";
   if (judgement.light_between.value_or(0) > 0)
-    out += fmt::format("; light from surface to surface, {:.2g} of I in the median, is left out",
-                       *judgement.light_between);
+    out += fmt::format(
+        "; light from surface to surface, {:.2g} of I in the median, {}", *judgement.light_between,
+        judgement.is_between_fitted ? "is in the fit, to a tenth of it" : "is left out");
   if (!is_by_part)
     out += "; where materials are known to a tenth or a fifth, ask again with a --floor of 0.3";
   return out + "\n";
