@@ -114,9 +114,8 @@ bool BetweenTable::light_missing(std::span<const Pose> poses, const PoseLighting
     for (std::size_t k = 0; k < now.size(); ++k) {
       row_[now[k]] = static_cast<std::uint32_t>(rows_++);
       for (std::size_t b = 0; b < bands_; ++b) {
-        const Stokes<ScatteringPlane> s = lit.indirect.empty()
-                                              ? Stokes<ScatteringPlane>{}
-                                              : lit.indirect[k * bands_ + b];
+        const Stokes<ScatteringPlane> s =
+            lit.indirect.empty() ? Stokes<ScatteringPlane>{} : lit.indirect[k * bands_ + b];
         for (const double x : {s.i, s.q, s.u})
           light_.push_back(std::isfinite(s.i + s.q + s.u) ? static_cast<float>(x) : 0);
       }

@@ -46,7 +46,7 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
     whole.model().take_masks_of(direct.masks ? direct.masks->model() : model);
   const bool is_reciprocal = model.joints().empty();
   const double sun_radius_rad = whole.sun_radius_rad();
-  constexpr std::size_t fine = 36, coarse = 12; // 5 deg and 15 deg
+  constexpr std::size_t fine = 24, coarse = 8; // 7.5 deg and 22.5 deg
   return LightBetween{std::move(whole),
                       std::make_shared<BetweenTable>(fine, sun_radius_rad, is_reciprocal),
                       std::make_shared<BetweenTable>(coarse, sun_radius_rad, is_reciprocal)};

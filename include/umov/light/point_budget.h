@@ -11,7 +11,7 @@ namespace umov::most_points {
 /// halve their half-width at best, and most would miss the accuracy all the same.
 inline constexpr std::size_t beside_masks = 1u << 20;
 inline constexpr std::size_t of_paths = 1u << 19;    ///< a sampled path costs more than a point
-inline constexpr std::size_t of_a_node = 1u << 16;   ///< of light between surfaces in a table
+inline constexpr std::size_t of_a_node = 1u << 15;   ///< of light between surfaces in a table
 inline constexpr std::size_t over_a_pass = 1u << 17; ///< for ranges of magnitude and polarization
 inline constexpr std::size_t to_find_the_brightest = 1u << 14; ///< of a pass, for its picture
 
