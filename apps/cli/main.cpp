@@ -81,6 +81,8 @@ int usage_error(const CLI::App &app, const CLI::ParseError &problem) {
       text += fmt::format(". Did you mean {} {}?", option->get_name(), given);
   } else if (const auto verbs = verbs_of(verb); !verbs.empty()) {
     text = fmt::format("no verb was given; there are {}", fmt::join(verbs, ", "));
+  } else if (constexpr std::string_view unread = "Could not convert: "; text.starts_with(unread)) {
+    text = text.substr(unread.size()) + "; a number was expected"; // texts need no conversion
   } else if (const std::size_t end = text.find('\n'); end != std::string::npos) {
     text.resize(end);
   }

@@ -90,7 +90,7 @@ Result<std::string> read_file(const fs::path &path, std::size_t limit_bytes) {
     if (bytes.size() + static_cast<std::size_t>(stream.gcount()) > limit_bytes)
       return fail(ErrorCode::BadInput,
                   "larger than the limit of " + std::to_string(limit_bytes >> 20) +
-                      " MiB for one input",
+                      " MiB for one input; split it, or leave out what is not needed",
                   {path.string()});
     bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }

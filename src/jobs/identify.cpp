@@ -77,7 +77,10 @@ Result<Library> Library::open(const std::string &folder) {
     if (at->path().extension() == ".umovsig")
       out.files_.push_back(at->path());
   if (problem)
-    return fail(ErrorCode::BadInput, "cannot read the folder: " + problem.message(), {folder});
+    return fail(ErrorCode::BadInput,
+                "cannot read the folder: " + problem.message() +
+                    "; a library was expected: make one with umov library build",
+                {folder});
   if (out.files_.empty())
     return fail(ErrorCode::BadInput,
                 "holds no signature (NAME.umovsig): make some with umov library build", {folder});

@@ -69,7 +69,8 @@ Result<void> check_curve(const std::vector<double> &nm, const std::vector<double
     return problem(fmt::format("wavelengths {:g} to {:g} nm; are they in micrometres? Say um.",
                                nm.front(), nm.back()));
   if (std::ranges::all_of(response, [](double r) { return r == 0; }))
-    return problem("the response is 0 everywhere");
+    return problem("the response is 0 everywhere; some of 0 to 1 was expected. Is it the right "
+                   "column?");
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <umov/core/text.h>
 
 namespace umov {
 namespace {
@@ -182,9 +183,9 @@ Result<ChannelCalibration> calibrate_channel(std::span<const double> angles_rad,
   const MatrixXd normal = algebra::gram(s);
   if (n < 3 || !is_regular(normal))
     return fail(ErrorCode::BadInput,
-                fmt::format("{} angles of the polarizer do not tell I, Q and U; three different "
-                            "ones within 180 deg were expected",
-                            n));
+                fmt::format("{} of the polarizer: I, Q and U are not told; three different ones "
+                            "within 180 deg were expected",
+                            counted(static_cast<std::size_t>(n), "angle")));
   const MatrixXd inverse = algebra::inverse_of(normal);
   const VectorXd row = algebra::times(inverse, algebra::transposed_times(s, c));
   ChannelCalibration out;

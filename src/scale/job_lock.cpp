@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <umov/core/parse_place.h>
 #include <umov/core/text.h>
 
 namespace umov::scale {
@@ -98,7 +99,7 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
                                   "the folder and begin the job again.")
                     : fmt::format("is no job of umov scale: {}. Name the folder of one, "
                                   "or begin a job in a new folder.",
-                                  problem.what()),
+                                  json_words(problem.what())),
                 {file});
   }
   return out;

@@ -17,7 +17,9 @@ inline Result<void> open_xml(std::string_view text, const std::string &file, con
       out.load_buffer(text.data(), text.size(),
                       pugi::parse_default | pugi::parse_doctype | pugi::parse_trim_pcdata);
   if (!done)
-    return fail(ErrorCode::BadInput, std::string("is no XML: ") + done.description(),
+    return fail(ErrorCode::BadInput,
+                std::string("is no XML: ") + done.description() +
+                    ". It may be cut off or changed: fetch the file again.",
                 {file, lines.of(done.offset)});
   for (const pugi::xml_node node : out.children())
     if (node.type() == pugi::node_doctype)

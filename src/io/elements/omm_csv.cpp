@@ -27,8 +27,12 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
     if (keys.empty()) {
       if (!cells)
         return refuse("a quote is not closed");
-      for (const CsvCell &cell : *cells)
+      for (const CsvCell &cell : *cells) {
+        if (std::ranges::find(keys, cell.text) != keys.end())
+          return refuse(printable(cell.text) +
+                        " stands twice among the keywords. Keep one of them.");
         keys.push_back(cell.text);
+      }
       continue;
     }
     Message message{{}, line_number, ++messages};

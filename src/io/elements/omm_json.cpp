@@ -2,8 +2,10 @@
 
 #include "io/elements/omm_message.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <umov/core/parse_place.h>
 #include <umov/core/text.h>
 
 namespace umov::omm {
@@ -48,7 +50,9 @@ std::string text_of(const nlohmann::json &value) {
 
 Result<void> read_json(std::string_view text, const std::string &file, const Sink &sink) {
   if (const std::size_t line = line_too_deep(text); line > 0)
-    return fail(ErrorCode::BadInput, "is nested deeper than any list of element sets",
+    return fail(ErrorCode::BadInput,
+                "is nested deeper than any list of element sets; is it another file? Fetch the "
+                "sets again.",
                 {file, line});
   // The parser keeps the last of two equal keys: they are caught as they pass.
   std::set<std::string> keys; // a list would take a hostile object's keys squared
@@ -70,10 +74,18 @@ Result<void> read_json(std::string_view text, const std::string &file, const Sin
   nlohmann::json document;
   try {
     document = nlohmann::json::parse(text, watch);
-  } catch (const nlohmann::json::exception &e) {
-    std::string why = e.what();
-    why = why.substr(why.find("] ") == std::string::npos ? 0 : why.find("] ") + 2);
-    return fail(ErrorCode::BadInput, "is no JSON of element sets: " + why, {file});
+  } catch (const nlohmann::json::parse_error &problem) {
+    const auto [line, column] =
+        line_and_column(text, problem.byte - std::min<std::size_t>(problem.byte, 1));
+    return fail(ErrorCode::BadInput,
+                "is no JSON of element sets: " + json_words(problem.what()) +
+                    ". Fetch the sets again.",
+                {file, line, column});
+  } catch (const nlohmann::json::exception &problem) { // a number that no double holds
+    return fail(ErrorCode::BadInput,
+                "is no JSON of element sets: " + json_words(problem.what()) +
+                    "; a finite number was expected. Correct it, or fetch the sets again.",
+                {file});
   }
   if (!twice.empty())
     return fail(ErrorCode::BadInput, twice + " stands twice. Keep one of them.", {file});

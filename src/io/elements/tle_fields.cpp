@@ -68,6 +68,10 @@ private:
 Result<int> catalogue_number(const Line &line, const std::string &file) {
   const Field field(line, file, 3, 7, "the catalogue number");
   const std::string_view text = field.text();
+  if (text.size() == 5 && text[0] >= 'a' && text[0] <= 'z')
+    return field.refuse("a capital where Alpha-5 has a letter",
+                        std::string("Did you mean '") + static_cast<char>(text[0] - 'a' + 'A') +
+                            "'?");
   if (text.size() != 5 || !(text[0] >= 'A' && text[0] <= 'Z'))
     return field.whole(false);
   constexpr std::string_view letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";

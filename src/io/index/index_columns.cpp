@@ -131,15 +131,14 @@ Result<void> check_row(const Row &row, std::size_t columns, double before,
 }
 
 /// A table in nm whose header says um is 1000 times off, and is read without a word.
-Result<double> unit_of(const std::string &header, double first, double last,
-                       const std::string &file) {
+Result<double> unit_of(const std::string &header, double first, double last, const Where &where) {
   double unit = unit_in(header);
   if (unit == 1000 && first >= 100)
     return fail(ErrorCode::BadInput,
                 fmt::format("the first wavelength is {:g}, and the header says um; is the table in "
                             "nm? Write nm there, or divide by 1000.",
                             first),
-                {file});
+                where);
   // Optical tables begin above 10 nm and end below 100 um: one unit cannot be taken for the other.
   if (unit == 0 && first >= 100)
     unit = 1;
@@ -151,7 +150,7 @@ Result<double> unit_of(const std::string &header, double first, double last,
               fmt::format("wavelengths {:g} to {:g}: nm or um? Say it in the header line, such as "
                           "wavelength_nm,n,k",
                           first, last),
-              {file});
+              where);
 }
 
 } // namespace
@@ -182,7 +181,8 @@ Result<IndexTable> read_index_columns(std::string_view text, const std::string &
     if (columns == 3)
       k.push_back(*parse_number(row.words[2]));
   }
-  UMOV_ASSIGN(unit, unit_of(header, nm.front(), nm.back(), file));
+  const Where begin{file, rows.front().line};
+  UMOV_ASSIGN(unit, unit_of(header, nm.front(), nm.back(), begin));
   for (double &one : nm)
     one *= unit;
   IndexTable out;
@@ -192,7 +192,7 @@ Result<IndexTable> read_index_columns(std::string_view text, const std::string &
   if (out.has_k)
     out.k = {nm, k};
   if (auto checked = check_index(out); !checked)
-    return fail(ErrorCode::BadInput, checked.error().message, {file});
+    return fail(ErrorCode::BadInput, checked.error().message, begin);
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <umov/core/files.h>
 #include <umov/core/stop.h>
+#include <umov/core/text.h>
 #include <umov/io/obj.h>
 #include <umov/shape/topology.h>
 
@@ -90,6 +91,8 @@ Result<MeshFile> read_kind(Kind kind, std::string_view bytes, const fs::path &pa
   case Kind::Unknown:
     break;
   }
+  if (bytes.starts_with("\x1F\x8B") || bytes.starts_with("PK\x03\x04"))
+    return fail(ErrorCode::BadInput, why_no_text(bytes).value(), {path.string()});
   return fail(ErrorCode::BadInput,
               fmt::format("neither the content nor the suffix tells which kind of mesh this is; "
                           ".obj, .gltf, .glb, .stl, .ply, {} were expected. Rename or convert it.",

@@ -14,6 +14,7 @@
 #include <umov/core/files.h>
 #include <umov/core/journal.h>
 #include <umov/core/temporary.h>
+#include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <unistd.h>
 #include <utility>
@@ -118,6 +119,13 @@ bool holds_only_ours(const fs::path &folder) {
 std::string stranger_in(const fs::path &folder) {
   const auto all = strangers_in(folder);
   return all.empty() ? std::string() : all.front();
+}
+
+/// Why a folder with something in it is not ours to replace.
+std::string in_the_way(const fs::path &folder) {
+  const std::string stranger = stranger_in(folder);
+  return stranger.empty() ? "files of a run and no manifest.json of umov"
+                          : fmt::format("\"{}\", which umov did not write", printable(stranger));
 }
 
 bool is_free(const fs::path &folder) {
@@ -265,10 +273,9 @@ Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
   if (fs::is_directory(out.target_, code) && !fs::is_empty(out.target_, code) &&
       (!status_of(out.target_) || !stranger_in(out.target_).empty())) {
     if (!force)
-      return trouble(target, fmt::format("holds \"{}\", which umov did not write. Choose another "
-                                         "folder (output.dir) or pass --force to put the files "
-                                         "beside it.",
-                                         stranger_in(out.target_)));
+      return trouble(target, fmt::format("holds {}. Choose another folder (output.dir) or pass "
+                                         "--force to put the files beside it.",
+                                         in_the_way(out.target_)));
     out.is_foreign_ = true;
   }
   if (const auto old = manifest_of(out.target_))

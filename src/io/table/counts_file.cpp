@@ -60,11 +60,11 @@ Result<void> check_columns(const CountCells &cells, const TextTable &table,
   for (const char *name : {"time_utc", "set_id", "band", "counts", "sky", "sky_err", "var_read",
                            "w0", "w1", "w2", "w3"})
     if (!cells.has(name))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("counts without the column \"{}\"; umov observe writes all, and "
-                              "docs/theory/observing.md says what they are",
-                              name),
-                  {file, table.lines.empty() ? 0 : table.lines.front()});
+      return without_column(
+          table, file,
+          fmt::format("counts without the column \"{}\"; umov observe writes all, and "
+                      "docs/theory/observing.md says what they are",
+                      name));
   return {};
 }
 

@@ -1,5 +1,7 @@
 #include <umov/io/table.h>
 
+#include "io/table/text_table.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/text.h>
@@ -70,6 +72,8 @@ private:
   }
 
   Result<void> missing(const std::string &name) const {
+    if (const auto why = why_no_names(header_))
+      return fail(ErrorCode::BadInput, fmt::format("{}: {}", *why, wanted()), {file_, line_});
     const auto near = nearest_name(name, header_);
     return fail(ErrorCode::BadInput,
                 fmt::format("no column \"{}\"{}; the first line must name the columns {}", name,

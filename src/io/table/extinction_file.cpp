@@ -24,11 +24,10 @@ Result<void> read_column(const TextTable &table, const ExtinctionColumn &one,
                          const std::string &file, MeasuredExtinction &out) {
   const auto column = column_named(table, one.name);
   if (!column)
-    return fail(ErrorCode::BadInput,
-                fmt::format("extinction without the column \"{}\"; a line of the names "
-                            "wavelength_nm and k_mag above the numbers was expected",
-                            one.name),
-                {file});
+    return without_column(table, file,
+                          fmt::format("extinction without the column \"{}\"; a line of the names "
+                                      "wavelength_nm and k_mag above the numbers was expected",
+                                      one.name));
   const std::string what = fmt::format("{} to {}{}", one.low, one.high, one.hint);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     UMOV_ASSIGN(value, number_in(table, row, *column, one.low, one.high, what, file));

@@ -40,7 +40,9 @@ private:
       fits_get_errstatus(status_, text);
     fits_clear_errmsg();
     return fail(ErrorCode::BadInput,
-                what + (status_ != 0 ? fmt::format(" (CFITSIO {}: {})", status_, text) : ""),
+                what + (status_ != 0 ? fmt::format(" (CFITSIO {}: {}). Export or fetch it again.",
+                                                   status_, text)
+                                     : ""),
                 {name_});
   }
 
@@ -162,10 +164,14 @@ Result<void> FitsReader::read_columns(TextTable &out) {
   int columns = 0;
   fits_get_num_rowsll(file_.get(), &rows, &status_);
   fits_get_num_cols(file_.get(), &columns, &status_);
+  if (status_ != 0 || rows < 0 || columns < 1)
+    return refuse("holds a table without columns; one column or more was expected");
   // A cell takes a byte at least: a header that promises more is not believed.
-  if (status_ != 0 || rows < 0 || columns < 1 ||
-      static_cast<std::size_t>(rows) > size_ / static_cast<std::size_t>(columns))
-    return refuse("is damaged or has no columns");
+  if (static_cast<std::size_t>(rows) > size_ / static_cast<std::size_t>(columns))
+    return refuse(
+        fmt::format("its header tells of {} rows, more than its {} bytes can hold: it was "
+                    "cut off or changed. Export or fetch it again.",
+                    rows, size_));
   if (static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns) > table_cells_max)
     return refuse(fmt::format("has more than {} cells, which would fill the memory; split the "
                               "table, or leave out columns",

@@ -114,16 +114,15 @@ Result<ObservationColumns> ObservationReader::columns() const {
   c.cov_qu = find({"cov_qu"});
   c.q_unit = scale_of(c.q);
   c.u_unit = scale_of(c.u);
-  const Where header{file_, table_.lines.empty() || text_.empty() ? 0 : table_.lines.front() - 1};
+  const Where header{file_, table_.header_line};
   const std::string found = fmt::format("{}", fmt::join(table_.columns, ", "));
   if (c.time < 0 && c.mjd < 0)
-    return fail(
-        ErrorCode::BadInput,
+    return without_column(
+        table_, file_,
         fmt::format("no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a Julian "
                     "date in UTC less 2400000.5) was expected in the line of names; there "
                     "are {}. Name yours so",
-                    printable(found)),
-        header);
+                    printable(found)));
   if (c.flux < 0 && c.mag < 0 && (c.q < 0 || c.u < 0))
     return fail(ErrorCode::BadInput,
                 fmt::format("nothing measured: a column \"I\", \"flux\" or \"mag\", or \"q\" and "
@@ -310,6 +309,39 @@ void warn_of_order(const ObservationsFile &file, Diagnostics &diagnostics) {
                      {file.path, first});
 }
 
+/// |q| or |u| above 1 by more than noise takes it there.
+bool is_too_polarized(const ObservedRow &row) {
+  constexpr double chance = 5; // standard deviations
+  const auto is_above = [](double part, double variance) {
+    const double sd = std::isnan(variance) ? 0 : std::sqrt(variance);
+    return std::abs(part) > 1 + chance * sd;
+  };
+  return is_above(row.q, row.cov_qq) || is_above(row.u, row.cov_uu);
+}
+
+/// Nothing is measured exactly.
+bool has_error_of_0(const ObservedRow &row) {
+  return (!std::isnan(row.flux) && row.flux_err == 0) ||
+         (!std::isnan(row.mag) && row.mag_err == 0) ||
+         (!std::isnan(row.q) && (row.cov_qq == 0 || row.cov_uu == 0));
+}
+
+/// Rows that can be read and hardly are what was measured.
+void warn_of_values(const ObservationsFile &file, Diagnostics &diagnostics) {
+  const auto warn = [&](bool (*is_odd)(const ObservedRow &), const char *what) {
+    const auto first = std::ranges::find_if(file.rows, is_odd);
+    if (first != file.rows.end())
+      diagnostics.warn(
+          counted(static_cast<std::size_t>(std::ranges::count_if(file.rows, is_odd)), "row") + what,
+          {file.path, first->line});
+  };
+  warn(is_too_polarized, " with |q| or |u| above 1 by more than five standard deviations: light "
+                         "is polarized by no more than all of it. Are they parts of I, and are "
+                         "their errors right?");
+  warn(has_error_of_0, " with an error of 0: nothing is measured exactly. Leave the cell empty "
+                       "where the error is not known");
+}
+
 /// Rows of one object: which one is not ours to choose.
 Result<void> check_name(const ObservationReader &reader, const ObservationColumns &c,
                         std::size_t rows) {
@@ -383,6 +415,7 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
     return fail(ErrorCode::BadInput,
                 "no row holds a measurement: all are empty, nan or flagged as saturated", {file});
   warn_of_order(out, diagnostics);
+  warn_of_values(out, diagnostics);
   const auto is_before = [](const ObservedRow &a, const ObservedRow &b) {
     const double apart = seconds_between(a.time, b.time);
     return std::abs(apart) < 1e-6 ? std::tie(a.band, a.site) < std::tie(b.band, b.site) : apart < 0;

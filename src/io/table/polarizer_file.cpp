@@ -21,11 +21,11 @@ Result<std::vector<PolarizerCount>> read_polarizer_text(std::string_view text,
   const auto angle = column_named(table, "angle_deg"), counts = column_named(table, "counts");
   const auto channel = column_named(table, "channel"), variance = column_named(table, "variance");
   if (!angle || !counts)
-    return fail(ErrorCode::BadInput,
-                fmt::format("no column \"{}\"; angle_deg and counts were expected, with channel "
-                            "where there are several",
-                            angle ? "counts" : "angle_deg"),
-                {file, 1});
+    return without_column(
+        table, file,
+        fmt::format("no column \"{}\"; angle_deg and counts were expected, with channel "
+                    "where there are several",
+                    angle ? "counts" : "angle_deg"));
   std::vector<PolarizerCount> out;
   for (std::size_t k = 0; k < table.rows(); ++k) {
     PolarizerCount one;

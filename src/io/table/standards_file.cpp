@@ -59,12 +59,12 @@ private:
 };
 
 Result<void> StandardsReader::check_columns() const {
-  const Where header{file_, 1};
+  const Where header{file_, table_.header_line};
   if (!has("name"))
-    return fail(ErrorCode::BadInput,
-                "a table of standards without the column \"name\"; it was expected, with p_percent "
-                "and pa_deg, or with mag, or with all of them",
-                header);
+    return without_column(
+        table_, file_,
+        "a table of standards without the column \"name\"; it was expected, with p_percent and "
+        "pa_deg, or with mag, or with all of them");
   for (const auto &[one, other] : {std::pair{"p_percent", "pa_deg"}, {"pa_deg", "p_percent"}})
     if (has(one) && !has(other))
       return fail(

@@ -26,11 +26,11 @@ Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std:
   for (const Wanted &one : wanted) {
     const auto column = column_named(table, one.name);
     if (!column)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("stars without the column \"{}\"; ra_deg, dec_deg and mag were "
-                              "expected",
-                              one.name),
-                  {file});
+      return without_column(
+          table, file,
+          fmt::format("stars without the column \"{}\"; ra_deg, dec_deg and mag were "
+                      "expected",
+                      one.name));
     const std::string what = fmt::format("a number from {} to {}", one.low, one.high);
     for (std::size_t row = 0; row < table.rows(); ++row) {
       UMOV_ASSIGN(value, number_in(table, row, *column, one.low, one.high, what, file,
@@ -38,6 +38,11 @@ Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std:
       out[row].*one.value = value;
     }
   }
+  if (out.empty())
+    return fail(ErrorCode::BadInput,
+                "no star in this table; a row of ra_deg, dec_deg and mag for each was expected. "
+                "Leave observation.stars out where the field has none",
+                {file});
   return out;
 }
 

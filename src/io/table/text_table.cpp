@@ -91,6 +91,23 @@ std::size_t end_of_key(std::string_view text) {
 
 } // namespace
 
+std::optional<std::string> why_no_names(const std::vector<std::string> &columns) {
+  if (columns.size() == 1 && columns.front().find(';') != std::string::npos)
+    return "the names of the columns are parted by semicolons; commas were expected. Save it so, "
+           "with points in its numbers";
+  const auto is_number = [](const std::string &cell) { return parse_number(cell).has_value(); };
+  if (2 * std::ranges::count_if(columns, is_number) > std::ssize(columns))
+    return "numbers where the names of the columns were expected; write a line of names above them";
+  return std::nullopt;
+}
+
+tl::unexpected<Error> without_column(const TextTable &table, const std::string &file,
+                                     const std::string &message) {
+  const auto why = why_no_names(table.columns);
+  return fail(ErrorCode::BadInput, why ? *why + ": " + message : message,
+              {file, table.header_line});
+}
+
 std::optional<std::size_t> column_named(const TextTable &table, std::string_view name) {
   const auto at = std::ranges::find(table.columns, name);
   if (at == table.columns.end())
@@ -144,9 +161,12 @@ void read_note(std::string_view line, TextTable &table) {
 Result<void> add_header(TextTable &out, const std::vector<CsvCell> &cells, const Where &where) {
   for (const CsvCell &cell : cells)
     out.columns.push_back(cell.text);
+  out.header_line = where.line;
   std::vector<std::string> sorted = out.columns;
   std::sort(sorted.begin(), sorted.end());
-  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+  // Numbers that stand twice are no names: what looks for its columns says so.
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+      twice != sorted.end() && !why_no_names(out.columns))
     return fail(ErrorCode::BadInput,
                 fmt::format("column \"{}\" stands twice; leave one out", printable(*twice)), where);
   // The line that CSV files of ours have above the names.

@@ -18,6 +18,7 @@ inline constexpr std::size_t table_cells_max = 50'000'000;
 /// would take fourteen times the file.
 struct TextTable {
   std::vector<std::string> columns;
+  std::size_t header_line = 0;    ///< of the names; 0 without lines, as in FITS
   std::vector<std::size_t> lines; ///< of each row
   std::map<std::string, std::string> notes;
   std::map<std::string, std::string> units; ///< by column, where the header tells them
@@ -40,6 +41,14 @@ private:
 /// Blank-separated where the header is, else comma-separated. BadInput for an open quote, a ragged
 /// row or a column that stands twice.
 Result<TextTable> read_text_table(std::string_view text, const std::string &file);
+
+/// Why a first line holds no names of columns: parted by semicolons, or numbers. Empty if it may.
+std::optional<std::string> why_no_names(const std::vector<std::string> &columns);
+
+/// Of a table without a column that it must have: `message`, or why it has no names at all before
+/// it, in the line of the names.
+tl::unexpected<Error> without_column(const TextTable &table, const std::string &file,
+                                     const std::string &message);
 
 /// Where a column stands; empty without it.
 std::optional<std::size_t> column_named(const TextTable &table, std::string_view name);

@@ -13,6 +13,7 @@
 #include <umov/orbit/ephemeris.h>
 #include <umov/orbit/moon.h>
 #include <umov/orbit/sgp4.h>
+#include <umov/orbit/state.h>
 
 namespace umov {
 namespace {
@@ -187,6 +188,38 @@ TEST(Eclipse, TheMoonIsNeverLeftOutWhereItCounts) {
       continue;
     EXPECT_LT(sunlit_beside_moon(time, across, apparent_sun_km(time)), 1) << to_iso(time);
   }
+}
+
+TEST(Ephemeris, PolesDateLineAndZenithAreNoSeams) {
+  const Epoch<Utc> time = *utc_from_iso("2018-01-21T05:00:00Z");
+  const OrbitState state = ItrsState{{-6746, 1496, 2239}, {-1, -6, 3}};
+  const auto at = [&](double lat, double lon, double height) {
+    return observe(state, time, *make_site("", lat, lon, height), ShadowModel::Ellipsoid);
+  };
+  // A pole is one place by any longitude, which is where its north is counted from.
+  for (const double pole : {90.0, -90.0}) {
+    const auto a = at(pole, 0, 0), b = at(pole, 90, 0);
+    EXPECT_NEAR(a.altitude.degrees(), b.altitude.degrees(), 1e-10);
+    const double turned = b.azimuth.degrees() - a.azimuth.degrees() - (pole > 0 ? 90 : -90);
+    EXPECT_NEAR(std::remainder(turned, 360), 0, 1e-10);
+    EXPECT_NEAR(a.range_km, b.range_km, 1e-9);
+  }
+  const auto east = at(10, 180, 0), west = at(10, -180, 0);
+  EXPECT_NEAR(east.azimuth.degrees(), west.azimuth.degrees(), 1e-10);
+  EXPECT_NEAR(east.altitude.degrees(), west.altitude.degrees(), 1e-10);
+  // Nearer by the height's part along the line; what is across it adds h^2/(2 range), .03 km at
+  // most.
+  for (const double height : {-430.0, 8848.0}) {
+    const auto low = at(10, 180, 0), high = at(10, 180, height);
+    EXPECT_NEAR(low.range_km - high.range_km, height / 1000 * std::sin(low.altitude.radians()),
+                0.03);
+  }
+  // Straight above there is no azimuth: 0 is what is told. Up is +x where 0 N, 0 E stands.
+  const auto above = observe(ItrsState{{7000, 0, 0}, {0, 7, 0}}, time, *make_site("", 0, 0, 0),
+                             ShadowModel::Ellipsoid);
+  EXPECT_EQ(above.azimuth.degrees(), 0);
+  EXPECT_EQ(above.altitude.degrees(), 90);
+  EXPECT_NEAR(above.range_km, 7000 - 6378.137, 1e-9);
 }
 
 TEST(Twilight, ByTheSunsAltitude) {

@@ -221,6 +221,17 @@ TEST(Elements, FieldsThatStandTwiceAreRefused) {
   std::string json = json_of();
   json.insert(2, "\"BSTAR\":1,");
   EXPECT_NE(refusal(json).find("BSTAR stands twice"), std::string::npos);
+  std::string csv = csv_of();
+  csv.replace(csv.find("REV_AT_EPOCH"), 12, "BSTAR"); // the line of keywords is the first
+  EXPECT_TRUE(refusal(csv).starts_with("sets:1: BSTAR stands twice")) << refusal(csv);
+}
+
+TEST(Elements, BrokenJsonHasItsPlaceAndTheWayOn) {
+  const std::string broken = refusal("[{\n \"BSTAR\": nan}]"), large = refusal("[{\"A\": 1e400}]");
+  EXPECT_TRUE(broken.starts_with("sets:2:")) << broken;
+  EXPECT_NE(broken.find("Fetch the sets again"), std::string::npos) << broken;
+  EXPECT_NE(large.find("1e400"), std::string::npos) << large;
+  EXPECT_NE(large.find("finite number was expected"), std::string::npos) << large;
 }
 
 TEST(Elements, HostileFilesAreRefusedAtOnce) {

@@ -25,18 +25,19 @@ TEST(IndexColumns, SpellingsOfOneTableAreOneTable) {
 }
 
 TEST(IndexColumns, RefusesWithTheLine) {
-  for (const auto &[text, word] : {std::pair{"nm,n,k\n500,1.4,0\n600,1.4\n", "mine.csv:3: "},
-                                   {"nm,n,k\n500,1.4,0\n600,x,0\n", "mine.csv:3: "},
-                                   {"nm,n,k\n600,1.4,0\n500,1.4,0\n", "increasing"},
-                                   {"x,n,k\n50,1.4,0\n500,1.4,0\n", "nm or um"},
-                                   {"nm,n,k\n500,-1.4,0\n600,1.4,0\n", "mine.csv:2: n = -1.4"},
-                                   {"nm,n,k\n500,1.4,0\n600,1.4,-2\n", "mine.csv:3: k = -2"},
-                                   {"um,n,k\n500,1.4,0\n600,1.4,0\n", "is the table in nm?"},
-                                   {"wavelength_nm,n,k\n500,x,0\n600,1,0\n", "mine.csv:2: \"x\""},
-                                   {"nm,n,k\n500,1.4,0\n", "1 row of wavelength"},
-                                   {"nm,n,k\n500,nan,1\n600,1,0\n", "mine.csv:2: \"nan\""},
-                                   {"500 nan\n600 1\n700 1\n", "mine.csv:1: \"nan\""},
-                                   {"hello\nworld\n", "wavelength, n, k"}}) {
+  for (const auto &[text, word] :
+       {std::pair{"nm,n,k\n500,1.4,0\n600,1.4\n", "mine.csv:3: "},
+        {"nm,n,k\n500,1.4,0\n600,x,0\n", "mine.csv:3: "},
+        {"nm,n,k\n600,1.4,0\n500,1.4,0\n", "increasing"},
+        {"x,n,k\n50,1.4,0\n500,1.4,0\n", "mine.csv:2: wavelengths 50 to 500: nm or um"},
+        {"nm,n,k\n500,-1.4,0\n600,1.4,0\n", "mine.csv:2: n = -1.4"},
+        {"nm,n,k\n500,1.4,0\n600,1.4,-2\n", "mine.csv:3: k = -2"},
+        {"um,n,k\n500,1.4,0\n600,1.4,0\n", "mine.csv:2: the first"},
+        {"wavelength_nm,n,k\n500,x,0\n600,1,0\n", "mine.csv:2: \"x\""},
+        {"nm,n,k\n500,1.4,0\n", "1 row of wavelength"},
+        {"nm,n,k\n500,nan,1\n600,1,0\n", "mine.csv:2: \"nan\""},
+        {"500 nan\n600 1\n700 1\n", "mine.csv:1: \"nan\""},
+        {"hello\nworld\n", "wavelength, n, k"}}) {
     const auto table = read_index_text(text, "mine.csv");
     ASSERT_FALSE(table) << text;
     EXPECT_NE(table.error().text().find(word), std::string::npos) << table.error().text();

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
+#include <tuple>
+#include <umov/core/parse_place.h>
 #include <umov/core/stop.h>
 
 namespace umov::mesh_io::gltf {
@@ -71,14 +73,6 @@ private:
   const std::atomic<bool> *cancel_;
   std::size_t read_ = 0;
 };
-
-Where line_and_column(const std::string &file, std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
-  const std::size_t start =
-      before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-  return {file, 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')),
-          1 + before.size() - start};
-}
 
 /// How a value is shown in a message.
 std::string shown(const Json &value) {
@@ -178,12 +172,14 @@ Result<void> Document::parse(std::string_view text, bool is_glb) {
     const Letters end(text.data() + text.size(), nullptr);
     json_ = std::make_shared<const Json>(Json::parse(Letters(text.data(), cancel_), end));
   } catch (const Json::parse_error &problem) {
-    std::string why = problem.what();
-    why = why.substr(why.find("] ") == std::string::npos ? 0 : why.find("] ") + 2);
+    Where where{file_};
+    if (!is_glb) // nlohmann counts bytes from 1
+      std::tie(where.line, where.column) =
+          line_and_column(text, problem.byte - std::min<std::size_t>(problem.byte, 1));
     return fail(ErrorCode::BadInput,
                 fmt::format("the JSON of the glTF file is broken ({}). Export or fetch it again.",
-                            clean_name(why)),
-                is_glb ? Where{file_} : line_and_column(file_, text, problem.byte));
+                            json_words(problem.what())),
+                std::move(where));
   } catch (const Json::exception &) { // a number that no double holds
     return fail(ErrorCode::BadInput,
                 "the JSON of the glTF file has a number out of range; finite numbers were "

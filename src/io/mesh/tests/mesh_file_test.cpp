@@ -342,6 +342,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "no JSON"},
         BadFile{"off_broken", "a.off", "OFF\n3 1 0\n0 0 0\n", "a.off"},
         BadFile{"dae_broken", "a.dae", "<?xml version=\"1.0\"?><COLLADA>", "a.dae"},
+        BadFile{"packed", "a.obj.gz", "\x1F\x8B\x08", "gunzip"},
         BadFile{"unknown", "a.xyz", "what is this", "neither the content nor the suffix"}),
     [](const auto &test) { return std::string(test.param.name); });
 

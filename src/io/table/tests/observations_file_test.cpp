@@ -78,6 +78,10 @@ TEST(Observations, EveryFaultHasItsPlace) {
   for (const Case &c : {
            Case{"", "obs.csv: no row of observations"},
            Case{"band,I\nV,1\n", "obs.csv:1: no column of time"},
+           Case{"# a note\n\nband,I\nV,1\n", "obs.csv:3: no column of time"},
+           Case{"time_utc;mag\n" + t + ";1,5\n",
+                "obs.csv:1: the names of the columns are parted by semicolons"},
+           Case{"58139.5,7.1,V\n58139.6,7.2,V\n", "obs.csv:1: numbers where the names"},
            Case{"JD,mag\n2458139.5,7\n",
                 "obs.csv:1: no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a "
                 "Julian "
@@ -104,6 +108,21 @@ TEST(Observations, EveryFaultHasItsPlace) {
     EXPECT_TRUE(file.error().text().starts_with(c.message)) << file.error().text();
     EXPECT_EQ(file.error().code, ErrorCode::BadInput);
   }
+}
+
+TEST(Observations, ValuesThatAreHardlyMeasuredAreToldOf) {
+  const std::string t = "2018-01-21T05:10:0";
+  Diagnostics diagnostics;
+  const auto file = read_observations_text(
+      std::string(head) + t + "0Z,V,1,.1,1.04,0,.01,.01\n" + t + "1Z,V,1,.1,0,-1.06,.01,.01\n" + t +
+          "2Z,V,1,.1,1.06,0,,\n" + t + "3Z,V,1,0,.1,0,.01,.01\n",
+      "obs.csv", diagnostics);
+  ASSERT_TRUE(file) << file.error().text();
+  ASSERT_EQ(diagnostics.warnings().size(), 2u);
+  EXPECT_TRUE(diagnostics.warnings()[0].text().starts_with("obs.csv:4: 2 rows with |q| or |u|"))
+      << diagnostics.warnings()[0].text();
+  EXPECT_TRUE(diagnostics.warnings()[1].text().starts_with("obs.csv:6: 1 row with an error of 0"))
+      << diagnostics.warnings()[1].text();
 }
 
 TEST(Observations, SaturatedRowsAreLeftOutWithAWarning) {

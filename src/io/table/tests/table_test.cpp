@@ -112,6 +112,13 @@ TEST(ReadCsv, SaysWhatIsWrongWhere) {
     ASSERT_FALSE(result) << row.text;
     EXPECT_EQ(result.error().where.line, row.line) << result.error().text();
   }
+  for (const auto &[text, word] :
+       {std::pair{"x;y\n1;2\n", "semicolons"}, {"1,2\n", "names of the columns were expected"}}) {
+    const auto result = read_csv(text, "t.csv", {"x", "y"});
+    ASSERT_FALSE(result) << text;
+    EXPECT_NE(result.error().text().find(word), std::string::npos) << result.error().text();
+    EXPECT_EQ(result.error().where.line, 1u);
+  }
   EXPECT_FALSE(read_csv("", "t.csv", {"x"}));
   EXPECT_TRUE(read_csv("# c\n\nz,x\nfoo,1\n", "t.csv", {"x"}));
 }
