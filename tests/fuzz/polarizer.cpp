@@ -1,4 +1,5 @@
-// Counts behind a polarizer that is turned (CSV, ECSV): what is accepted can be fitted, each row with an error.
+// Counts behind a polarizer that is turned (CSV, ECSV): what is accepted can be fitted, each row
+// with an error.
 
 #include "fuzz/target.h"
 

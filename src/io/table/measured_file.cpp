@@ -26,15 +26,12 @@ Result<MeasuredBrdf> read_measured(std::string_view text, const std::string &fil
   for (const std::string &name : others)
     there += table.find(name) != nullptr ? 1u : 0u;
   if (there != 0 && there != others.size()) {
-    // Either a name is missing, or a cell is no number: the reader says which, and where.
+    // A name is missing, or a cell is no number: read as needed, the reader says which, and where.
     std::vector<std::string> all{"wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg", "m00"};
     all.insert(all.end(), others.begin(), others.end());
-    UMOV_TRY(read_csv(text, file, all));
-    return fail(ErrorCode::BadInput,
-                fmt::format("has {} of the columns m01 to m33; all 15 (a Mueller table) or none (a "
-                            "plain BRDF) were expected",
-                            there),
-                {file});
+    UMOV_ASSIGN(whole, read_csv(text, file, all));
+    table = std::move(whole);
+    there = others.size();
   }
   std::vector<BrdfSample> samples(table.rows());
   for (std::size_t i = 0; i < samples.size(); ++i) {

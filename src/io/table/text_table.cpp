@@ -244,7 +244,11 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
       continue;
     }
     if (line.size() > line_max || out.rows() >= rows_max)
-      return fail(ErrorCode::BadInput, "this is longer than a table of counts; is it one?", where);
+      return fail(ErrorCode::BadInput,
+                  fmt::format("more than {} bytes in a line, or more than {} rows; is it a table? "
+                              "Split it",
+                              line_max, rows_max),
+                  where);
     if (out.columns.empty())
       has_blanks = line.find(',') == std::string_view::npos;
     if ((out.rows() + 1) * out.columns.size() > table_cells_max)
