@@ -200,7 +200,9 @@ HUGE = cards("SIMPLE  =                    T", "BITPIX  =                    8",
      ["a.txt:2", "numbers where the names of the columns were expected", "write a line of names", "time_utc"]),
     ("a.csv.gz", gzip.compress(bytes(200_000_000)), ["a.csv.gz", "gunzip"]),
     ("a.fits", b"SIMPLE  =                    T" + bytes(3000), ["a.fits", "FITS", "Export or fetch it again"]),
-    ("a.fits", HUGE, ["a.fits", "2000000000 rows", "Export or fetch it again"])])
+    ("a.fits", HUGE, ["a.fits: part 2 ", "32000000000 bytes of data, of which 0 are there", "Export or fetch it again"]),
+    ("a.fits", HUGE.replace(b"2000000000", b"    x    1"), ["a.fits: part 2 ", 'NAXIS2 = "x    1"', "a whole number was expected"]),
+    ("a.fits", HUGE.replace(b"TFIELDS", b"TFIELD "), ["a.fits: part 2 ", "no TFIELDS"]), ("a.fits", HUGE.replace(b"END" + b" " * 77, b"FOO" + b" " * 77), ["a.fits: part 1 ", "without an END"])])
 def test_light_curves_of_others(refused, name, content, words):
     refused({name: content}, ["period", name], words)
 

@@ -1,5 +1,7 @@
 #include "io/table/fits_read.h"
 
+#include "io/table/fits_layout.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fitsio.h>
@@ -204,7 +206,8 @@ Result<TextTable> FitsReader::read() {
 bool is_fits(std::string_view bytes) { return bytes.starts_with("SIMPLE  ="); }
 
 Result<TextTable> read_fits_table(std::string_view bytes, const std::string &file) {
-  return FitsReader(bytes, file).read();
+  UMOV_ASSIGN(size, fits_size(bytes, file));
+  return FitsReader(bytes.substr(0, size), file).read();
 }
 
 } // namespace umov
