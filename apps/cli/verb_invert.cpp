@@ -48,20 +48,24 @@ void settle(InvertVerb &o) {
                                               : LightMethod::Masks;
 }
 
-void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
+void add_observations(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   CurveErrors &errors = o->request.errors;
   verb.add_option("observations", o->request.observations,
                   "Light curves (ECSV, CSV, FITS or TDM), of umov reduce, umov run or your own, or "
                   "counts of umov observe: one fit of all")
       ->required();
-  verb.add_option("--grid", o->request.grid, "Attitudes that are looked at first")
-      ->check(CLI::Range(1000, 5'000'000))
-      ->capture_default_str();
   verb.add_option("--outliers", errors.outlier_share, "Share of measurements that are wrong")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   verb.add_flag("--intensity-only", o->is_intensity_only, "Leave q and u aside");
   add_model_options(verb, o);
+}
+
+void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
+  add_observations(verb, o);
+  verb.add_option("--grid", o->request.grid, "Attitudes that are looked at first")
+      ->check(CLI::Range(1000, 5'000'000))
+      ->capture_default_str();
 }
 
 void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
@@ -95,7 +99,7 @@ void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   add_common(verb, o->common, true);
 }
 
-void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
+void add_material_sds(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   jobs::MaterialErrors &errors = o->request.materials;
   const auto add = [&](const char *name, double &value, const char *text) {
     verb.add_option(name, value, text)->check(CLI::Range(0.0, 2.0))->capture_default_str();
@@ -106,6 +110,10 @@ void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
       "How well it is known what each lobe and each body reflects, in ln; 0: exactly");
   add("--haze-sd", errors.haze,
       "How well the haze of materials without a body is known, in ln; 0: exactly");
+}
+
+void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
+  add_material_sds(verb, o);
   verb.add_option("--largest-floor", o->request.largest_floor,
                   "The floor grows with the misfit of the best attitude, up to this; 0: it stays")
       ->check(CLI::Range(0.0, 1.0))

@@ -26,11 +26,15 @@ struct InvertVerb {
 /// What a verb does with its options.
 using InvertJob = std::function<Result<jobs::Inversion>(const Scenario &, const InvertVerb &,
                                                         const jobs::Monitor &, Diagnostics &)>;
-/// Adds the options of all that observations are given to.
+/// Adds the options of all that observations are given to, and how the model is known.
+void add_observations(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
+/// The same, and those of a search.
 void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
 /// Adds those of them that say how well the model is known and where the answer goes.
 void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
-/// Adds those that say how well materials and shape are known where attitudes are searched.
+/// Adds those that say how well materials are known.
+void add_material_sds(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
+/// The same, and how wrong a model may turn out where attitudes are searched.
 void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
 /// Puts options that are words into the request.
 void settle(InvertVerb &o);

@@ -1,4 +1,4 @@
-// umov invert pose, spin, material and health: their own options and their jobs.
+// umov invert pose, spin, track, material and health: their own options and their jobs.
 
 #include "invert_each.h"
 
@@ -42,6 +42,34 @@ void add_spin(CLI::App &invert, const Exit &exit_with) {
                spin->axis = *axis == "any" ? '\0' : axis->front();
                return jobs::invert_spin(scenario, asked.request, *spin, job_options(asked.common),
                                         monitor, diagnostics);
+             });
+}
+
+void add_track(CLI::App &invert, const Exit &exit_with) {
+  auto *verb = invert.add_subcommand(
+      "track", "Follow attitudes that are known through later observations, with weights");
+  auto o = std::make_shared<InvertVerb>();
+  auto track = std::make_shared<jobs::TrackRequest>();
+  o->visibility = "masks"; // live: rays take a thousand times as long
+  add_observations(*verb, o);
+  verb->add_option("--start", track->start,
+                   "Answer of umov invert pose, spin or track about earlier observations: its "
+                   "folder, or its modes.ecsv");
+  verb->add_option(
+          "--rate-noise", track->rate_noise,
+          "Random walk of the rate about each body axis [deg/s/sqrt(s)]; 0: it is constant")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  verb->add_option("--rate-sd", track->rate_sd,
+                   "How well it is known that attitudes of umov invert pose stand still [deg/s]")
+      ->check(CLI::Range(1e-9, 10.0))
+      ->capture_default_str();
+  add_material_sds(*verb, o);
+  run_invert(*verb, o, exit_with,
+             [track](const Scenario &scenario, const InvertVerb &asked,
+                     const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+               return jobs::invert_track(scenario, asked.request, *track, job_options(asked.common),
+                                         monitor, diagnostics);
              });
 }
 
@@ -104,6 +132,7 @@ void add_invert(CLI::App &app, const Exit &exit_with) {
   invert->require_subcommand(1);
   add_pose(*invert, exit_with);
   add_spin(*invert, exit_with);
+  add_track(*invert, exit_with);
   add_unmixing(*invert, exit_with);
   add_health(*invert, exit_with);
   add_invert_plan(*invert, exit_with);

@@ -21,7 +21,7 @@ using inverse::Gains;
 CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
                                  std::span<const std::size_t> epochs)
     : bands_(curve.bands), errors_(errors), is_absolute_(curve.is_absolute) {
-  median_i_ = inverse::median_of_i(curve);
+  median_i_ = errors.median_i > 0 ? errors.median_i : inverse::median_of_i(curve);
   groups_ = errors.has_clouds ? curve.epochs.size() : curve.bands.size();
   // One channel says nothing of I by itself while q and u are left aside: reduced sets do.
   if (!curve.counts.empty() && errors.has_polarization) {
@@ -83,42 +83,53 @@ std::vector<CurveLikelihood::Place> CurveLikelihood::places() const {
 }
 
 /// Weights of the rows: those of the data, less where the model itself is not sure.
-CurveLikelihood::Weighed CurveLikelihood::weigh(const ModelLight &model) const {
+CurveLikelihood::Weighed CurveLikelihood::weigh_at(const ModelLight &model, double scale) const {
   Weighed out;
-  if (counts_) { // variances of the model's counts, at the scale that they ask for themselves
-    double scale = counts_->first_scale(model);
-    constexpr int rounds = 2;
-    for (int round = 0; round < rounds; ++round) {
-      out.counts = counts_->whitened(model, scale);
-      out.scale = scale;
-      double cross = 0, square = 0;
-      for (std::size_t k = 0; k < counts_->size(); ++k) {
-        cross += out.counts.net[k] * out.counts.light[k];
-        square += out.counts.light[k] * out.counts.light[k];
-      }
-      scale = square > 0 ? std::max(cross / square, 0.0) : 0;
-    }
+  if (counts_) { // variances of the model's counts
+    out.counts = counts_->whitened(model, scale);
+    out.scale = scale;
     out.grown = out.counts.log_det;
     return out;
   }
   std::vector<double> &weights = out.weights;
   weights.resize(rows_.size());
-  double cross = 0, square = 0;
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
+  for (std::size_t k = 0; k < rows_.size(); ++k)
     weights[k] = rows_[k].weight;
-    const double m = model.i[rows_[k].at];
-    cross += rows_[k].weight * rows_[k].i * m;
-    square += rows_[k].weight * m * m;
-  }
-  if (model.i_half_width.empty() || !(square > 0))
+  if (model.i_half_width.empty())
     return out;
   constexpr double half_width = 1.96; // of a normal error, in standard deviations
-  const double scale = std::max(cross / square, 0.0) / half_width;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const double sd = scale * model.i_half_width[rows_[k].at];
+    const double sd = scale / half_width * model.i_half_width[rows_[k].at];
     const double factor = 1 + weights[k] * sd * sd;
     weights[k] /= factor;
     out.grown += std::log(factor);
+  }
+  return out;
+}
+
+/// The same at the scale that the data ask for themselves.
+CurveLikelihood::Weighed CurveLikelihood::weigh(const ModelLight &model) const {
+  double cross = 0, square = 0;
+  const auto best = [&] { return square > 0 ? std::max(cross / square, 0.0) : 0; };
+  if (!counts_) {
+    for (const Row &row : rows_) {
+      const double m = model.i[row.at];
+      cross += row.weight * row.i * m;
+      square += row.weight * m * m;
+    }
+    return weigh_at(model, best());
+  }
+  Weighed out;
+  double scale = counts_->first_scale(model);
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    out = weigh_at(model, scale);
+    cross = square = 0;
+    for (std::size_t k = 0; k < counts_->size(); ++k) {
+      cross += out.counts.net[k] * out.counts.light[k];
+      square += out.counts.light[k] * out.counts.light[k];
+    }
+    scale = best();
   }
   return out;
 }
@@ -225,6 +236,50 @@ Comparison CurveLikelihood::compare(const ModelLight &model, std::span<const dou
   return out;
 }
 
+CurveLikelihood::Mixed CurveLikelihood::mixture(const Block &block,
+                                                std::span<const double> residuals) const {
+  const double wide = errors_.outlier_factor, share = errors_.outlier_share;
+  double x2 = 0;
+  for (std::size_t j = 0; j < block.size; ++j)
+    x2 += residuals[block.begin + j] * residuals[block.begin + j];
+  // The wide one taken out, whose exponential would be 0 far out.
+  const double good = (1 - share) * std::exp(-x2 / 2 * (1 - 1 / (wide * wide)));
+  const double bad = share / std::pow(wide, block.measurements);
+  return {(good + bad / (wide * wide)) / (good + bad),
+          x2 / (wide * wide) - 2 * std::log(good + bad)};
+}
+
+Comparison CurveLikelihood::compare_at(const ModelLight &model,
+                                       std::span<const double> gains) const {
+  Comparison out;
+  Gains known;
+  known.gain.assign(gains.begin(), gains.end());
+  double sum = 0;
+  for (const double gain : gains)
+    sum += gain;
+  out.scale = sum / static_cast<double>(gains.size());
+  const Weighed data = weigh_at(model, out.scale);
+  out.chi2 = fill(model, known, data, out.residuals);
+  out.minus_2_log = trust(out.residuals).minus_2_log + data.grown;
+  return out;
+}
+
+CurveLikelihood::Trust CurveLikelihood::trust(std::span<const double> residuals) const {
+  Trust out{std::vector<double>(residuals.size(), 1), 0};
+  if (!(errors_.outlier_share > 0)) {
+    for (const double r : residuals)
+      out.minus_2_log += r * r;
+    return out;
+  }
+  for (const Block &block : blocks()) {
+    const Mixed one = mixture(block, residuals);
+    out.minus_2_log += one.minus_2_log;
+    std::fill_n(out.root.begin() + static_cast<std::ptrdiff_t>(block.begin), block.size,
+                std::sqrt(one.trust));
+  }
+  return out;
+}
+
 Comparison CurveLikelihood::compare_as_it_is(const ModelLight &model) const {
   Comparison out;
   const Weighed data = weigh(model);
@@ -236,33 +291,27 @@ Comparison CurveLikelihood::compare_as_it_is(const ModelLight &model) const {
     return out;
   // Each row is good, or with a small probability wrong by a larger error: expectation
   // maximisation of the mixture, three rounds (Dempster, Laird & Rubin 1977).
-  const double wide = errors_.outlier_factor, share = errors_.outlier_share;
   const std::vector<Block> all = blocks();
-  std::vector<double> trust(all.size(), 1);
+  std::vector<double> trusted(all.size(), 1);
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
     out.minus_2_log = gains.log_det + gains.prior_chi2 + data.grown;
     for (std::size_t k = 0; k < all.size(); ++k) {
-      double x2 = 0;
-      for (std::size_t j = 0; j < all[k].size; ++j)
-        x2 += std::pow(out.residuals[all[k].begin + j], 2);
-      const double good = (1 - share) * std::exp(-x2 / 2);
-      const double bad =
-          share * std::exp(-x2 / (2 * wide * wide)) / std::pow(wide, all[k].measurements);
-      trust[k] = (good + bad / (wide * wide)) / (good + bad);
-      out.minus_2_log -= 2 * std::log(good + bad);
+      const Mixed one = mixture(all[k], out.residuals);
+      trusted[k] = one.trust;
+      out.minus_2_log += one.minus_2_log;
     }
     if (round + 1 < rounds) {
-      Weighed trusted = data;
+      Weighed less = data;
       for (std::size_t k = 0; k < rows_.size(); ++k)
-        trusted.weights[k] *= trust[k];
+        less.weights[k] *= trusted[k];
       for (std::size_t k = rows_.size(); k < all.size(); ++k)
         for (std::size_t j = 0; j < all[k].size; ++j) {
           const std::size_t at = all[k].begin + j - 3 * rows_.size();
-          trusted.counts.net[at] *= std::sqrt(trust[k]);
-          trusted.counts.light[at] *= std::sqrt(trust[k]);
+          less.counts.net[at] *= std::sqrt(trusted[k]);
+          less.counts.light[at] *= std::sqrt(trusted[k]);
         }
-      gains = gains_of(sums_of(model, trusted));
+      gains = gains_of(sums_of(model, less));
       // As before, residuals are whitened by all of the weight.
       out.chi2 = fill(model, gains, data, out.residuals);
     }
@@ -270,7 +319,7 @@ Comparison CurveLikelihood::compare_as_it_is(const ModelLight &model) const {
   out.scale = gains.scale;
   for (std::size_t k = 0; k < all.size(); ++k) // least squares then see what the mixture does
     for (std::size_t j = 0; j < all[k].size; ++j)
-      out.residuals[all[k].begin + j] *= std::sqrt(trust[k]);
+      out.residuals[all[k].begin + j] *= std::sqrt(trusted[k]);
   out.chi2 = 0;
   for (const double r : out.residuals)
     out.chi2 += r * r;

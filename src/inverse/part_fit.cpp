@@ -2,6 +2,7 @@
 // docs/theory/inverse.md, section 2.
 
 #include "inverse/likelihood_sums.h"
+#include "inverse/part_mix.h"
 
 #include "algebra/dense.h"
 
@@ -22,17 +23,11 @@ public:
   CurveLikelihood::FittedLight run(std::span<const double> near);
 
 private:
-  /// Part and whether it is its slope.
-  struct Unknown {
-    std::size_t part = 0;
-    bool is_slope = false;
-  };
   /// A number that is linear in the light: I of a sample, or electrons of a channel.
   struct Linear {
     std::size_t at = 0, group = 0;
     double data = 0, light = 0;
   };
-  void put_slopes();
   void put_rows(const Weighed &data);
   void set(const VectorXd &off);
   void residuals();
@@ -46,15 +41,10 @@ private:
   const CurveLikelihood &of_;
   const ModelLight &model_;
   std::size_t cells_;
-  std::vector<std::size_t> lit_; ///< cells with light: of a few epochs, few
-  std::vector<Unknown> unknowns_;
-  /// ln I(y)/I(0) = first y + second y^2, y the slope's unknown: [part * cells + cell].
-  std::vector<double> first_, second_;
-  std::vector<double> factor_, by_slope_; ///< of each part now; derivative of its ln
+  PartMix mix_; ///< the light now
   std::vector<Linear> linear_;
   MatrixXd linear_parts_;           ///< light of the parts in those numbers
   std::vector<std::size_t> ratios_; ///< rows with q and u
-  std::vector<double> i_, q_, u_;   ///< light of the model now
   std::vector<double> root_;        ///< of what each number is trusted
   std::vector<double> light_;       ///< of the linear numbers now
   Gains gains_;
@@ -65,50 +55,13 @@ private:
 };
 
 PartFit::PartFit(const CurveLikelihood &likelihood, const ModelLight &model)
-    : of_(likelihood), model_(model), cells_(model.i.size()) {
-  for (std::size_t p = 0; p < model.parts.size(); ++p)
-    if (model.parts[p].sd > 0)
-      unknowns_.push_back({p, false});
-  for (std::size_t p = 0; p < model.parts.size(); ++p)
-    if (!model.parts[p].smooth.empty())
-      unknowns_.push_back({p, true});
-  for (std::size_t k = 0; k < cells_; ++k)
-    if (model.i[k] > 0)
-      lit_.push_back(k);
-  put_slopes();
+    : of_(likelihood), model_(model), cells_(model.i.size()), mix_(model) {
   put_rows(of_.weigh(model));
-  i_.resize(cells_);
-  q_.resize(cells_);
-  u_.resize(cells_);
   light_.resize(linear_.size());
   const auto numbers = static_cast<Index>(linear_.size() + 2 * ratios_.size());
   residual_.resize(numbers);
   root_.assign(static_cast<std::size_t>(numbers), 1);
-  jacobian_.resize(numbers, static_cast<Index>(unknowns_.size()));
-}
-
-/// Far from a lobe's middle its light goes with a power of e of the slope, and near it nearly so.
-void PartFit::put_slopes() {
-  const std::size_t size = model_.parts.size() * cells_;
-  first_.assign(size, 0);
-  second_.assign(size, 0);
-  factor_.assign(size, 1);
-  by_slope_.assign(size, 0);
-  for (const Unknown &unknown : unknowns_) {
-    const PartLight &part = model_.parts[unknown.part];
-    if (!unknown.is_slope)
-      continue;
-    for (const std::size_t k : lit_) {
-      constexpr double dark = 1e-6; // of all light: whatever it becomes is not seen
-      const double least = dark * model_.i[k];
-      if (!(std::max({part.i[k], part.smooth[k], part.rough[k]}) > least))
-        continue;
-      const double less = std::log((part.smooth[k] + least) / (part.i[k] + least));
-      const double more = std::log((part.rough[k] + least) / (part.i[k] + least));
-      first_[unknown.part * cells_ + k] = (more - less) / 2;
-      second_[unknown.part * cells_ + k] = (more + less) / 2;
-    }
-  }
+  jacobian_.resize(numbers, static_cast<Index>(mix_.unknowns().size()));
 }
 
 void PartFit::put_rows(const Weighed &data) {
@@ -137,33 +90,8 @@ void PartFit::put_rows(const Weighed &data) {
               : data.counts.parts[static_cast<std::size_t>(p)][k - from.size()];
 }
 
-/// Light with the parts so far off.
 void PartFit::set(const VectorXd &off) {
-  const std::size_t parts = model_.parts.size();
-  std::vector<double> amount(parts, 1), slope(parts, 0);
-  for (std::size_t k = 0; k < unknowns_.size(); ++k) {
-    const double value = off[static_cast<Index>(k)];
-    const std::size_t p = unknowns_[k].part;
-    (unknowns_[k].is_slope ? slope[p] : amount[p]) =
-        unknowns_[k].is_slope ? value : std::exp(model_.parts[p].sd * value);
-  }
-  std::ranges::copy(model_.i, i_.begin());
-  std::ranges::copy(model_.q, q_.begin());
-  std::ranges::copy(model_.u, u_.begin());
-  constexpr double most = 5; // e-folds: beyond, three roughnesses say nothing
-  for (std::size_t p = 0; p < parts; ++p) {
-    const PartLight &part = model_.parts[p];
-    for (const std::size_t k : lit_) {
-      const std::size_t at = p * cells_ + k;
-      const double y = slope[p], power = y * (first_[at] + y * second_[at]);
-      by_slope_[at] = std::abs(power) < most ? first_[at] + 2 * y * second_[at] : 0;
-      factor_[at] = amount[p] * (power == 0 ? 1 : std::exp(std::clamp(power, -most, most)));
-      const double more = factor_[at] - 1;
-      i_[k] += more * part.i[k];
-      q_[k] += more * part.q[k];
-      u_[k] += more * part.u[k];
-    }
-  }
+  mix_.set({off.data(), static_cast<std::size_t>(off.size())});
 }
 
 /// Puts residuals of the best gains.
@@ -172,7 +100,7 @@ void PartFit::residuals() {
   for (std::size_t k = 0; k < linear_.size(); ++k)
     light_[k] = linear_[k].light;
   for (std::size_t p = 0; p < model_.parts.size(); ++p) {
-    const double *const factor = &factor_[p * cells_];
+    const double *const factor = &mix_.factor()[p * cells_];
     const auto part = linear_parts_.col(static_cast<Index>(p));
     for (std::size_t k = 0; k < linear_.size(); ++k)
       light_[k] += (factor[linear_[k].at] - 1) * part[static_cast<Index>(k)];
@@ -185,8 +113,8 @@ void PartFit::residuals() {
         root_[k] * (linear_[k].data - gains_.gain[linear_[k].group] * light_[k]);
   for (std::size_t j = 0; j < ratios_.size(); ++j) {
     const auto &row = of_.rows_[ratios_[j]];
-    const double light = std::max(i_[row.at], 1e-9 * model_.i[row.at]);
-    const double dq = row.q - q_[row.at] / light, du = row.u - u_[row.at] / light;
+    const double light = std::max(mix_.i()[row.at], 1e-9 * model_.i[row.at]);
+    const double dq = row.q - mix_.q()[row.at] / light, du = row.u - mix_.u()[row.at] / light;
     const std::size_t at = linear_.size() + 2 * j;
     residual_[static_cast<Index>(at)] = root_[at] * row.l_qq * dq;
     residual_[static_cast<Index>(at + 1)] = root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
@@ -232,13 +160,13 @@ void PartFit::jacobian() {
     by_light[k] = -root_[k] * gains_.gain[linear_[k].group];
   for (std::size_t j = 0; j < ratios_.size(); ++j) {
     const std::size_t cell = of_.rows_[ratios_[j]].at;
-    all[j] = std::max(i_[cell], 1e-9 * model_.i[cell]);
+    all[j] = std::max(mix_.i()[cell], 1e-9 * model_.i[cell]);
   }
-  for (std::size_t n = 0; n < unknowns_.size(); ++n) {
-    const auto &[number, is_slope] = unknowns_[n];
+  for (std::size_t n = 0; n < mix_.unknowns().size(); ++n) {
+    const auto &[number, is_slope] = mix_.unknowns()[n];
     const PartLight &part = model_.parts[number];
-    const double *const factor = &factor_[number * cells_];
-    const double *const by_slope = &by_slope_[number * cells_];
+    const double *const factor = &mix_.factor()[number * cells_];
+    const double *const by_slope = &mix_.by_slope()[number * cells_];
     // Derivative of the factor of the part.
     const auto change = [&, is_slope = is_slope](std::size_t cell) {
       return factor[cell] * (is_slope ? by_slope[cell] : part.sd);
@@ -250,8 +178,8 @@ void PartFit::jacobian() {
     for (std::size_t j = 0; j < ratios_.size(); ++j) {
       const auto &row = of_.rows_[ratios_[j]];
       const double more = change(row.at) / all[j];
-      const double dq = -more * (part.q[row.at] - q_[row.at] / all[j] * part.i[row.at]);
-      const double du = -more * (part.u[row.at] - u_[row.at] / all[j] * part.i[row.at]);
+      const double dq = -more * (part.q[row.at] - mix_.q()[row.at] / all[j] * part.i[row.at]);
+      const double du = -more * (part.u[row.at] - mix_.u()[row.at] / all[j] * part.i[row.at]);
       const std::size_t at = linear_.size() + 2 * j;
       column[at] = root_[at] * row.l_qq * dq;
       column[at + 1] = root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
@@ -262,7 +190,7 @@ void PartFit::jacobian() {
 /// The gains and their scale move with the parts, and are eliminated (Schur's complement): gains of
 /// groups, which are normal about the scale, then the scale itself.
 void PartFit::eliminate(MatrixXd &normal) const {
-  const auto count = static_cast<Index>(unknowns_.size());
+  const auto count = static_cast<Index>(mix_.unknowns().size());
   const bool has_clouds = of_.errors_.has_clouds;
   MatrixXd along = MatrixXd::Zero(count, static_cast<Index>(of_.groups_));
   for (Index n = 0; n < count; ++n)
@@ -311,7 +239,7 @@ bool PartFit::settle(VectorXd &best) {
   VectorXd off = best;
   double least = 1e300;
   constexpr int rounds = 8;
-  for (int round = 0; round < rounds && !unknowns_.empty(); ++round) {
+  for (int round = 0; round < rounds && !mix_.unknowns().empty(); ++round) {
     set(off);
     residuals();
     const double objective = misfit() + off.squaredNorm();
@@ -330,16 +258,16 @@ bool PartFit::settle(VectorXd &best) {
       return true;
     }
   }
-  return unknowns_.empty();
+  return mix_.unknowns().empty();
 }
 
 CurveLikelihood::FittedLight PartFit::run(std::span<const double> near) {
-  VectorXd off = VectorXd::Zero(static_cast<Index>(unknowns_.size()));
+  VectorXd off = VectorXd::Zero(static_cast<Index>(mix_.unknowns().size()));
   bool is_at_rest = true;
   // One step more of numbers that are trusted anew is no derivative: reweighting comes to rest in
   // many steps, each a part of what is left.
   const bool is_mixture = of_.errors_.outlier_share > 0;
-  if (!is_mixture && !near.empty() && near.size() == unknowns_.size()) {
+  if (!is_mixture && !near.empty() && near.size() == mix_.unknowns().size()) {
     std::ranges::copy(near, off.begin());
     set(off);
     residuals();
@@ -348,7 +276,8 @@ CurveLikelihood::FittedLight PartFit::run(std::span<const double> near) {
     is_at_rest = settle(off);
   }
   set(off);
-  return {i_, q_, u_, {off.data(), off.data() + off.size()}, log_det_, is_at_rest};
+  return {mix_.i(), mix_.q(),  mix_.u(), {off.data(), off.data() + off.size()},
+          log_det_, is_at_rest};
 }
 
 } // namespace umov::inverse

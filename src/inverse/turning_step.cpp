@@ -15,7 +15,6 @@ bool has_axis(const Turning &turning, double span_s) {
 
 double sinc(double x) { return std::abs(x) > 1e-6 ? std::sin(x) / x : 1; }
 
-Eigen::Vector3d eigen_of(const Vec3<Body> &v) { return {v.x, v.y, v.z}; }
 Vec3<Body> part(const Step &step, Eigen::Index first) {
   return {step[first], step[first + 1], step[first + 2]};
 }

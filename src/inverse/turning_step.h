@@ -18,6 +18,9 @@ namespace umov::inverse {
 /// hundred radians for a tilt of a degree after a thousand turns, along a path that bends.
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 
+/// The same vector.
+inline Eigen::Vector3d eigen_of(const Vec3<Body> &v) { return {v.x, v.y, v.z}; }
+
 /// A turning after a step. A body that turns by less than a radian over the span has no axis to
 /// speak of: its last three numbers are the change of the rate vector times the span.
 Turning stepped(const Turning &from, const Step &step, double span_s);

@@ -19,13 +19,6 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// When the rows were measured, from the first on; long gaps, as between passes, are left out.
-struct TimeAxis {
-  Numbers x;
-  std::vector<std::size_t> stretch; ///< of each row: those of one have no gap between them
-  std::string title;
-};
-
 /// The time from which on there is a gap: ten usual steps, at least ten minutes.
 double gap_s(const Numbers &at) {
   Numbers steps;
@@ -36,6 +29,8 @@ double gap_s(const Numbers &at) {
     return 600;
   return std::max(600.0, 10 * median_of(std::move(steps)));
 }
+
+} // namespace
 
 TimeAxis time_axis(const std::vector<std::string> &utc) {
   TimeAxis out;
@@ -71,6 +66,8 @@ TimeAxis time_axis(const std::vector<std::string> &utc) {
                     stretch > 0 ? fmt::format(", {} left out", counted(stretch, "gap")) : "");
   return out;
 }
+
+namespace {
 
 /// One band of a table of a fit: which rows, and how it is drawn.
 struct BandRows {

@@ -9,6 +9,14 @@
 
 namespace umov::jobs {
 
+/// When rows were measured, from the first on; long gaps, as between passes, are left out.
+struct TimeAxis {
+  std::vector<double> x;            ///< empty where a text is no time
+  std::vector<std::size_t> stretch; ///< of each row: those of one have no gap between them
+  std::string title;
+};
+TimeAxis time_axis(const std::vector<std::string> &utc);
+
 /// Data and fit against time, and what is left over. `fit`: as of fit_table.
 void add_data_figures(std::vector<PlotFigure> &figures, const Table &fit);
 

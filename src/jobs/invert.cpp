@@ -46,6 +46,7 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                 {"samples", samples_table(answer, false)},
                 {"twins", twins_table(answer, symmetries)},
                 {"fit", fit_table(observed, model, answer)}};
+  note_start(out.tables.front().table, observed, answer, judgement.verdict);
   out.page =
       inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer, out.summary);
   out.inputs = observed.inputs;
@@ -84,6 +85,8 @@ Result<void> write_inversion(const Inversion &inversion, const Scenario &scenari
   for (const NamedTable &one : inversion.tables)
     add(one.name + ".ecsv", to_ecsv(one.table));
   add("verdict.json", inversion.json);
+  if (!inversion.state.empty())
+    add("state.json", inversion.state);
   if (!inversion.page.empty())
     add("report.html", inversion.page);
   add("scenario.lock.toml", locked_scenario(scenario));

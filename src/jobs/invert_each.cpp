@@ -1,6 +1,7 @@
 #include <umov/jobs/invert_each.h>
 
 #include "jobs/curve_questions.h"
+#include "jobs/invert_tables.h"
 #include "jobs/job_journal.h"
 #include "jobs/ready_objects.h"
 #include "jobs/result_folder.h"
@@ -9,17 +10,21 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
+#include <string_view>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 
 namespace umov::jobs {
 namespace {
 
-/// Its column `curve` first; a note that is of one answer alone is left out.
+/// Its column `curve` first; notes that are of one answer alone are left out.
 Table of_curve(const std::string &curve, const Table &table) {
+  const std::string_view own[] = {"share_of_so3", epoch_note, until_note,
+                                  median_note,    floor_note, verdict_note};
   Table out;
   for (const auto &[key, value] : table.notes())
-    if (key != "share_of_so3")
+    if (std::ranges::find(own, key) == std::end(own))
       out.note(key, value);
   out.add("curve", "", "file of the observations", std::vector<std::string>(table.rows(), curve));
   for (const Column &column : table.columns()) {

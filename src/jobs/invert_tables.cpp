@@ -7,6 +7,7 @@
 #include <span>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/likelihood.h>
+#include <umov/inverse/sample_errors.h>
 
 namespace umov::jobs {
 namespace {
@@ -18,17 +19,10 @@ Quaternion upper(Quaternion q) { return q.w < 0 ? Quaternion{-q.w, -q.x, -q.y, -
 
 /// Columns qw to qz of attitudes.
 template <class Rows, class Take> void add_attitudes(Table &table, const Rows &rows, Take take) {
-  std::array<Numbers, 4> c;
-  for (const auto &row : rows) {
-    const Quaternion q = upper(take(row));
-    c[0].push_back(q.w);
-    c[1].push_back(q.x);
-    c[2].push_back(q.y);
-    c[3].push_back(q.z);
-  }
-  const char *const names[] = {"qw", "qx", "qy", "qz"};
-  for (std::size_t k = 0; k < 4; ++k)
-    table.add(names[k], "", "body_from_gcrs at the first epoch, scalar first", std::move(c[k]));
+  std::vector<Quaternion> attitudes;
+  for (const auto &row : rows)
+    attitudes.push_back(take(row));
+  add_attitude_columns(table, attitudes, "body_from_gcrs at the first epoch, scalar first");
 }
 
 template <class Rows> void add_rates(Table &table, const Rows &rows) {
@@ -50,6 +44,30 @@ void note(Table &table) {
 }
 
 } // namespace
+
+void add_attitude_columns(Table &table, const std::vector<Quaternion> &attitudes,
+                          const char *description) {
+  std::array<Numbers, 4> c;
+  for (const Quaternion &one : attitudes) {
+    const Quaternion q = upper(one);
+    c[0].push_back(q.w);
+    c[1].push_back(q.x);
+    c[2].push_back(q.y);
+    c[3].push_back(q.z);
+  }
+  const char *const names[] = {"qw", "qx", "qy", "qz"};
+  for (std::size_t k = 0; k < 4; ++k)
+    table.add(names[k], "", description, std::move(c[k]));
+}
+
+void note_start(Table &modes, const ObservedLightCurve &observed, const PoseAnswer &answer,
+                Verdict verdict) {
+  modes.note(epoch_note, to_iso_exact(observed.geometry.front().time));
+  modes.note(until_note, to_iso_exact(observed.geometry.back().time));
+  modes.note(median_note, fmt::format("{}", inverse::median_of_i(observed.curve)));
+  modes.note(floor_note, fmt::format("{}", answer.errors.floor));
+  modes.note(verdict_note, name_of(verdict));
+}
 
 Table modes_table(const PoseAnswer &answer, bool has_rates) {
   Table out;

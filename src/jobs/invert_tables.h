@@ -9,12 +9,23 @@ namespace umov::jobs {
 
 /// modes.ecsv; with rates where they were free.
 Table modes_table(const PoseAnswer &answer, bool has_rates);
+/// What `umov invert track` needs to know of modes: when they hold, up to when they had data, how
+/// bright those are, the floor and the verdict that they rest on.
+void note_start(Table &modes, const ObservedLightCurve &observed, const PoseAnswer &answer,
+                Verdict verdict);
+/// Keys of those notes, which are of one answer alone.
+inline constexpr const char *epoch_note = "epoch_utc", *until_note = "data_until_utc",
+                            *median_note = "median_intensity", *floor_note = "floor",
+                            *verdict_note = "search_verdict";
 /// set95.ecsv.
 Table set_table(const PoseAnswer &answer);
 /// samples.ecsv.
 Table samples_table(const PoseAnswer &answer, bool has_rates);
 /// twins.ecsv: for every mode those of the body's own turns and of the other modes.
 Table twins_table(const PoseAnswer &answer, const std::vector<BodySymmetry> &symmetries);
+/// Columns qw to qz of a table, one half of the unit quaternions of attitudes: w is not negative.
+void add_attitude_columns(Table &table, const std::vector<Quaternion> &attitudes,
+                          const char *description);
 /// fit.ecsv: what was measured, over its best scale, beside a model's light.
 Table fit_table(const ObservedLightCurve &observed, const EndMember &model,
                 const CurveErrors &errors);

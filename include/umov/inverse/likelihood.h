@@ -23,6 +23,7 @@ struct CurveErrors {
   double floor = 0.02;         ///< error of the model, in parts of I; half of it for q and u
   double floor_q = -1;         ///< of q and u, if it is not that half; below 0: it is
   double floor_median = 0.01;  ///< more of it, in parts of the median I
+  double median_i = 0;         ///< that median; 0: of the curve's own samples
   double zero_point_sd = 0.02; ///< of each band's zero point, relative
   double scale_sd = 0;         ///< of the common scale, relative; 0: any scale
   bool has_clouds = false;     ///< transparency free at every epoch, common to its bands
@@ -92,6 +93,19 @@ public:
   /// (`outlier_share`): they are fitted from the parts as they are.
   [[nodiscard]] Comparison compare(const ModelLight &model,
                                    std::span<const double> near = {}) const;
+  /// Holds a model, whose parts are as they are, against the curve with the gain of each group
+  /// (band; epoch in clouds) said: nothing is fitted or integrated over, residuals are those of the
+  /// data alone, and none is trusted less than another. `scale` is the mean of the gains.
+  [[nodiscard]] Comparison compare_at(const ModelLight &model, std::span<const double> gains) const;
+  /// So many gains.
+  [[nodiscard]] std::size_t groups() const { return groups_; }
+  /// How far measurements are trusted where some may be wrong (`outlier_share`).
+  struct Trust {
+    std::vector<double> root; ///< of each residual: what least squares multiply it by
+    double minus_2_log = 0;   ///< of the mixture; without outliers the sum of the squares
+  };
+  /// Of residuals as `compare_at` has them.
+  [[nodiscard]] Trust trust(std::span<const double> residuals) const;
   /// The light of a model with its parts as they fit best.
   struct FittedLight {
     std::vector<double> i, q, u;
@@ -138,6 +152,7 @@ private:
   using GainSums = inverse::GainSums;
   [[nodiscard]] GainSums sums_of(const ModelLight &model, const Weighed &data) const;
   [[nodiscard]] Weighed weigh(const ModelLight &model) const;
+  [[nodiscard]] Weighed weigh_at(const ModelLight &model, double scale) const;
   [[nodiscard]] Gains gains_of(const GainSums &sums) const;
   [[nodiscard]] Comparison compare_as_it_is(const ModelLight &model) const;
   double fill(const ModelLight &model, const Gains &gains, const Weighed &data,
@@ -149,6 +164,11 @@ private:
     double measurements = 0;
   };
   [[nodiscard]] std::vector<Block> blocks() const;
+  /// A block as a mixture of good and wrong ones: what it is trusted, and its part of -2 ln.
+  struct Mixed {
+    double trust = 1, minus_2_log = 0;
+  };
+  [[nodiscard]] Mixed mixture(const Block &block, std::span<const double> residuals) const;
 
   std::vector<Row> rows_;
   std::shared_ptr<const inverse::CountLikelihood> counts_; ///< in place of rows; may be none

@@ -59,6 +59,7 @@ struct Inversion {
   std::string summary;            ///< for a person
   std::string json;               ///< verdict.json
   std::string page;               ///< report.html; empty where this build makes none
+  std::string state = {}; ///< state.json, which the next tracking goes on from; may be empty
   std::vector<InputFile> inputs;
   std::uint64_t seed = 0;
   ManifestInput::Light light; ///< how the object was lit, for the manifest
@@ -82,6 +83,22 @@ struct SpinOptions {
 Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &request,
                               const SpinOptions &spin, const JobOptions &options,
                               const Monitor &monitor, Diagnostics &diagnostics);
+
+/// How an attitude is followed.
+struct TrackRequest {
+  /// Folder of an answer of invert_pose, invert_spin or invert_track, or its modes.ecsv.
+  std::string start;
+  /// Random walk of the rate about each body axis [deg/s/sqrt(s)]; 0: it is constant.
+  double rate_noise = 1e-4;
+  double rate_sd = 0.01; ///< of the rate of attitudes that were taken for fixed [deg/s]
+};
+
+/// Follows the attitudes of an answer through observations that are later than its own, each by a
+/// filter of its own, with weights: docs/theory/inverse.md, section 14. Usage without a start;
+/// BadInput for one that is none, and where no observation is later than its data.
+Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &request,
+                               const TrackRequest &track, const JobOptions &options,
+                               const Monitor &monitor, Diagnostics &diagnostics);
 
 /// What a part of the body may consist of.
 struct MaterialOptions {

@@ -1,0 +1,415 @@
+#include "inverse/tests/box_light.h"
+
+#include <Eigen/Dense>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <umov/inverse/track.h>
+
+namespace umov {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double degree = pi / 180;
+
+/// Light of three bands that is as linear in small turns as directions are: a part of one component
+/// of the Sun or the observer each. No body has it, but a filter does not know.
+bool linear_light(std::span<const Pose> poses, StokesTable &out) {
+  out.resize(poses.size(), 3);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double parts[] = {poses[k].sun.y, poses[k].sun.z, poses[k].observer.z};
+    for (std::size_t b = 0; b < 3; ++b) {
+      BandResult light;
+      light.stokes.i = 2 + parts[b];
+      out.put(k, b, light);
+    }
+  }
+  return true;
+}
+
+/// What a turn by small x, y, z changes in those: v' = v - turn x v, Sun along x, observer along y.
+MatrixXd slopes() {
+  MatrixXd out = MatrixXd::Zero(3, 6);
+  out(0, 2) = -1; // Sun's y
+  out(1, 1) = 1;  // Sun's z
+  out(2, 0) = -1; // observer's z
+  return out;
+}
+
+ObservedCurve one_epoch(const std::vector<double> &i, double sd) {
+  ObservedCurve out;
+  out.bands = {"a", "b", "c"};
+  out.is_absolute = true;
+  ObservedEpoch epoch;
+  epoch.to_sun = {1, 0, 0};
+  epoch.to_observer = {0, 1, 0};
+  out.epochs = {epoch};
+  for (std::size_t b = 0; b < i.size(); ++b) {
+    ObservedSample s;
+    s.band = b;
+    s.i = i[b];
+    s.i_sd = sd;
+    out.samples.push_back(s);
+  }
+  return out;
+}
+
+std::vector<double> flat(const MatrixXd &m) { return {m.data(), m.data() + m.size()}; }
+
+/// Kalman's filter (1960) of six unknowns, written down as it stands in textbooks.
+struct Kalman {
+  VectorXd x;
+  MatrixXd p;
+  double log_evidence = 0;
+  void predict(double seconds, double noise) {
+    MatrixXd f = MatrixXd::Identity(6, 6), q = MatrixXd::Zero(6, 6);
+    for (int k = 0; k < 3; ++k) {
+      f(k, k + 3) = seconds;
+      q(k, k) = noise * noise * seconds * seconds * seconds / 3;
+      q(k, k + 3) = q(k + 3, k) = noise * noise * seconds * seconds / 2;
+      q(k + 3, k + 3) = noise * noise * seconds;
+    }
+    x = f * x;
+    p = f * p * f.transpose() + q;
+  }
+  void update(const VectorXd &seen, double sd) {
+    const MatrixXd h = slopes();
+    const MatrixXd s = h * p * h.transpose() + MatrixXd::Identity(3, 3) * sd * sd;
+    const VectorXd off = seen - h * x;
+    log_evidence -=
+        (off.dot(s.inverse() * off) + std::log(s.determinant()) + 3 * std::log(2 * pi)) / 2;
+    const MatrixXd gain = p * h.transpose() * s.inverse();
+    x += gain * off;
+    p -= gain * h * p;
+  }
+};
+
+TrackOptions exactly() {
+  TrackOptions out;
+  out.errors = no_floor();
+  out.errors.scale_sd = 1e-7; // gains are known, as Kalman's filter takes them
+  out.errors.zero_point_sd = 1e-6;
+  out.threads = 1;
+  return out;
+}
+
+/// What a measurement of I near 2 is off by: none is taken for better than 1e-4 of it.
+double told_sd(double sd) { return std::hypot(sd, 2 * best_relative); }
+
+MatrixXd first_covariance() {
+  // Turns of 1e-3 rad: squares of them are a thousandth of what is compared.
+  MatrixXd out = MatrixXd::Zero(6, 6);
+  out.topLeftCorner<3, 3>() << 4, 1, 0, 1, 3, .5, 0, .5, 2;
+  out.topLeftCorner<3, 3>() *= 1e-6;
+  out.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() * 1e-9;
+  return out;
+}
+
+TrackMode mode_at(const Vec3<Body> &turn, std::size_t number, double weight,
+                  const TrackOptions &options) {
+  TrackMode out = track_mode({turned({1, 0, 0, 0}, turn), {}}, flat(first_covariance()), 1, true, 3,
+                             {}, options.errors);
+  out.number = number;
+  out.log_weight = std::log(weight);
+  return out;
+}
+
+TEST(AttitudeBank, IsKalmansFilterWhereAllIsLinear) {
+  const double sd = 5e-4, seconds = 10;
+  TrackOptions options = exactly();
+  options.rate_noise = 1e-6;
+  AttitudeBank bank({mode_at({0, 0, 0}, 1, 1, options)}, linear_light, {"a", "b", "c"}, {},
+                    options);
+  Kalman kalman{VectorXd::Zero(6), first_covariance()};
+  for (std::uint64_t e = 0; e < 20; ++e) {
+    VectorXd seen(3);
+    for (std::uint64_t b = 0; b < 3; ++b)
+      seen[static_cast<int>(b)] =
+          1e-3 * std::sin(0.3 * static_cast<double>(e + b)) + sd * noise(1, 3 * e + b);
+    const auto step = bank.step(one_epoch({2 + seen[0], 2 + seen[1], 2 + seen[2]}, sd), seconds);
+    ASSERT_TRUE(step) << step.error().text();
+    kalman.predict(seconds, options.rate_noise);
+    kalman.update(seen, told_sd(sd));
+    const TrackMode &mode = bank.modes().front();
+    const Vec3<Body> turn = turn_between({1, 0, 0, 0}, mode.turning.attitude);
+    const Vec3<Body> w = mode.turning.rate_rad_s;
+    const double mean[] = {turn.x, turn.y, turn.z, w.x, w.y, w.z};
+    const std::size_t n = 6 + mode.nuisances.size();
+    for (std::size_t r = 0; r < 6; ++r) {
+      const int row = static_cast<int>(r);
+      EXPECT_NEAR(mean[r], kalman.x[row], 0.01 * std::sqrt(kalman.p(row, row))) << e << " " << r;
+      for (std::size_t c = 0; c < 6; ++c) {
+        const int column = static_cast<int>(c);
+        EXPECT_NEAR(mode.covariance[r * n + c], kalman.p(row, column),
+                    0.01 * std::sqrt(kalman.p(row, row) * kalman.p(column, column)));
+      }
+    }
+  }
+}
+
+TEST(AttitudeBank, WeightsAreThoseOfBayesRule) {
+  const double sd = 5e-4;
+  const TrackOptions options = exactly();
+  const Vec3<Body> apart{0.010, -0.008, 0.006}; // five standard deviations: they stay two
+  AttitudeBank bank({mode_at({0, 0, 0}, 1, 0.2, options), mode_at(apart, 2, 0.8, options)},
+                    linear_light, {"a", "b", "c"}, {}, options);
+  std::vector<Kalman> exact(2, {VectorXd::Zero(6), first_covariance()});
+  exact[1].x.head(3) << apart.x, apart.y, apart.z;
+  VectorXd seen(3); // between the two
+  seen << -0.0035, -0.0045, -0.0048;
+  const auto step = bank.step(one_epoch({2 + seen[0], 2 + seen[1], 2 + seen[2]}, sd), 0);
+  ASSERT_TRUE(step) << step.error().text();
+  for (Kalman &one : exact)
+    one.update(seen, told_sd(sd));
+  ASSERT_EQ(bank.modes().size(), 2u);
+  double log_weight[2]{};
+  for (const TrackMode &mode : bank.modes())
+    log_weight[mode.number - 1] = mode.log_weight;
+  // Of turns of .01 rad the squares bend light by 1e-4, a fifth of an error.
+  EXPECT_NEAR(log_weight[1] - log_weight[0],
+              std::log(4.0) + exact[1].log_evidence - exact[0].log_evidence, 0.2);
+  EXPECT_NEAR(std::exp(log_weight[0]) + std::exp(log_weight[1]), 1, 1e-12);
+}
+
+/// A box on a pass, followed from a normal guess about the truth.
+struct Pursuit {
+  std::function<Turning(double)> truth; ///< at seconds
+  PoseLighting light = Box();
+  double attitude_sd = 2 * degree, rate_sd = 0.02 * degree, snr = 50;
+  std::size_t epochs = 40;
+  TrackOptions options = [] {
+    TrackOptions out;
+    out.errors = small().errors;
+    out.errors.median_i = 5;
+    out.threads = 1;
+    return out;
+  }();
+  std::function<void(ObservedCurve &)> spoil = [](ObservedCurve &) {};
+};
+
+/// One curve of the truth: its pose at each epoch by itself.
+ObservedCurve seen(const Pursuit &pursuit, std::uint64_t seed) {
+  ObservedCurve out = pass(pursuit.epochs);
+  for (std::size_t e = 0; e < out.epochs.size(); ++e) {
+    ObservedCurve one = out;
+    one.epochs = {out.epochs[e]};
+    Turning now = pursuit.truth(out.epochs[e].seconds);
+    now.attitude = turned(now.attitude, now.rate_rad_s * -out.epochs[e].seconds);
+    observe(one, pursuit.light, now, pursuit.snr, seed * 1000 + e);
+    for (ObservedSample &s : one.samples) {
+      s.epoch = e;
+      out.samples.push_back(s);
+    }
+  }
+  pursuit.spoil(out);
+  return out;
+}
+
+ObservedCurve epoch_of(const ObservedCurve &curve, std::size_t epoch) {
+  ObservedCurve out;
+  out.bands = curve.bands;
+  out.epochs = {curve.epochs[epoch]};
+  for (ObservedSample s : curve.samples)
+    if (s.epoch == epoch) {
+      s.epoch = 0;
+      out.samples.push_back(s);
+    }
+  return out;
+}
+
+/// A guess that is off by what its covariance says.
+TrackMode guess(const Pursuit &pursuit, std::uint64_t seed) {
+  const Turning truth = pursuit.truth(0);
+  MatrixXd covariance = MatrixXd::Zero(6, 6);
+  double off[6];
+  for (std::uint64_t k = 0; k < 6; ++k) {
+    const double sd = k < 3 ? pursuit.attitude_sd : pursuit.rate_sd;
+    covariance(static_cast<int>(k), static_cast<int>(k)) = sd * sd;
+    off[k] = sd * noise(seed, 900'000 + k);
+  }
+  TrackMode out = track_mode({turned(truth.attitude, {off[0], off[1], off[2]}),
+                              truth.rate_rad_s + Vec3<Body>{off[3], off[4], off[5]}},
+                             flat(covariance), 7, false, 2, {}, pursuit.options.errors);
+  out.number = 1;
+  return out;
+}
+
+/// How far the truth is from a mode, in its own errors: chi-square of three numbers.
+double off_of(const TrackMode &mode, Quaternion truth) {
+  const Vec3<Body> turn = turn_between(mode.turning.attitude, truth);
+  const auto n = static_cast<int>(6 + mode.nuisances.size());
+  const MatrixXd all = Eigen::Map<const MatrixXd>(mode.covariance.data(), n, n);
+  const Eigen::Vector3d v(turn.x, turn.y, turn.z);
+  return v.dot(all.topLeftCorner<3, 3>().inverse() * v);
+}
+
+/// A bank that has followed a pursuit.
+AttitudeBank followed(const Pursuit &pursuit, std::uint64_t seed,
+                      std::size_t epochs = std::numeric_limits<std::size_t>::max()) {
+  const ObservedCurve curve = seen(pursuit, seed);
+  AttitudeBank bank({guess(pursuit, seed)}, pursuit.light, curve.bands, {}, pursuit.options);
+  double now = 0;
+  for (std::size_t e = 0; e < std::min(epochs, curve.epochs.size()); ++e) {
+    const auto step = bank.step(epoch_of(curve, e), curve.epochs[e].seconds - now);
+    EXPECT_TRUE(step);
+    now = curve.epochs[e].seconds;
+    if (bank.loss() != TrackLoss::None)
+      break;
+  }
+  return bank;
+}
+
+/// Sum of `off_of` of the heaviest over some seeds; each of them not lost.
+double sum_off(const Pursuit &pursuit, std::uint64_t seeds) {
+  double out = 0;
+  const double end = 10.0 * static_cast<double>(pursuit.epochs - 1);
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const AttitudeBank bank = followed(pursuit, seed);
+    EXPECT_EQ(bank.loss(), TrackLoss::None) << seed;
+    out += off_of(bank.modes().front(), pursuit.truth(end).attitude);
+    if (std::getenv("UMOV_SHOW"))
+      std::printf("%llu off %g modes %zu w %g sd %g chi2 %g of %zu\n", (unsigned long long)seed, off_of(bank.modes().front(), pursuit.truth(end).attitude), bank.modes().size(), std::exp(bank.modes().front().log_weight), std::sqrt(bank.modes().front().covariance[0])/degree, bank.modes().front().chi2, bank.modes().front().measurements);
+  }
+  return out;
+}
+
+Turning constant_turn(double seconds) {
+  const Vec3<Body> rate = Vec3<Body>{0.2, -0.3, 0.25} * degree;
+  return {turned(attitude_grid(1009)[300], rate * seconds), rate};
+}
+
+TEST(AttitudeBank, HoldsATurningBodyWithinItsOwnErrors) {
+  Pursuit pursuit;
+  pursuit.truth = constant_turn;
+  constexpr std::uint64_t seeds = 30;
+  const double off = sum_off(pursuit, seeds);
+  // chi-square of 90: between its 1 in 1000 on either side.
+  EXPECT_GT(off, 54.2);
+  EXPECT_LT(off, 137.2);
+}
+
+/// Faster and faster, 0 to 1.6 deg/s in 400 s about an axis that leans over.
+Turning drifting(double seconds) {
+  Quaternion at = attitude_grid(1009)[300];
+  constexpr int steps = 400;
+  const auto rate_at = [](double t) { return Vec3<Body>{1e-3 * t, 2e-3 * t, 3e-3 * t} * degree; };
+  for (int k = 0; k < steps; ++k)
+    at = turned(at, rate_at((k + 0.5) * seconds / steps) * (seconds / steps));
+  return {at, rate_at(seconds)};
+}
+
+TEST(AttitudeBank, HoldsARateThatDriftsWhereItsWalkAllowsIt) {
+  Pursuit pursuit;
+  pursuit.truth = drifting;
+  // The rate changes by 3.7e-3 deg/s a second: .012 deg/s/sqrt(s) over steps of 10 s.
+  pursuit.options.rate_noise = 0.012 * degree;
+  const AttitudeBank held = followed(pursuit, 1);
+  EXPECT_EQ(held.loss(), TrackLoss::None);
+  const Turning truth = drifting(390);
+  EXPECT_LT(off_of(held.modes().front(), truth.attitude), 16.3); // 1 in 1000
+  EXPECT_LT(angle_between(held.modes().front().turning.attitude, truth.attitude), 3 * degree);
+  EXPECT_LT(norm(held.modes().front().turning.rate_rad_s - truth.rate_rad_s), 0.15 * degree);
+  // A constant rate cannot follow, and says so.
+  pursuit.options.rate_noise = 0;
+  EXPECT_EQ(followed(pursuit, 1).loss(), TrackLoss::Misfit);
+}
+
+TEST(AttitudeBank, ABodyOfAnotherLightIsLostNotFollowed) {
+  Pursuit pursuit;
+  pursuit.truth = constant_turn;
+  pursuit.spoil = [](ObservedCurve &curve) { // colours change places
+    for (ObservedSample &s : curve.samples)
+      s.band = 1 - s.band;
+  };
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    EXPECT_EQ(followed(pursuit, seed).loss(), TrackLoss::Misfit) << seed;
+}
+
+TEST(AttitudeBank, WithoutLightItOnlyTurnsOn) {
+  Pursuit pursuit;
+  pursuit.truth = constant_turn;
+  pursuit.options.rate_noise = 1e-3 * degree;
+  pursuit.spoil = [](ObservedCurve &curve) {
+    for (ObservedSample &s : curve.samples)
+      if (s.epoch >= 20)
+        s.i = s.q = s.u = std::nan("");
+  };
+  const TrackMode before = followed(pursuit, 1, 20).modes().front();
+  const TrackMode after = followed(pursuit, 1, 30).modes().front();
+  EXPECT_EQ(after.chi2, before.chi2);
+  EXPECT_EQ(after.measurements, before.measurements);
+  TrackMode alone = before;
+  for (int k = 0; k < 10; ++k)
+    alone = turned_on(alone, 10, pursuit.options.rate_noise);
+  EXPECT_EQ(after.covariance, alone.covariance);
+  EXPECT_EQ(angle_between(after.turning.attitude, alone.turning.attitude), 0);
+  EXPECT_LT(off_of(after, constant_turn(290).attitude), 16.3); // 1 in 1000
+  EXPECT_GT(after.covariance[0], before.covariance[0]);
+}
+
+TEST(AttitudeBank, AWrongNumberIsNotFollowedWhereSomeMayBeWrong) {
+  Pursuit pursuit;
+  pursuit.truth = constant_turn;
+  pursuit.options.errors.outlier_share = 0.05;
+  pursuit.spoil = [](ObservedCurve &curve) {
+    for (ObservedSample &s : curve.samples)
+      if (s.epoch % 9 == 4 && s.band == 0)
+        s.i *= 2;
+  };
+  double off = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const AttitudeBank bank = followed(pursuit, seed);
+    EXPECT_EQ(bank.loss(), TrackLoss::None);
+    off += off_of(bank.modes().front(), constant_turn(390).attitude);
+  }
+  EXPECT_LT(off, 59.7); // chi-square of 30, 1 in 1000
+}
+
+/// A box with a mirror on each face, whose glint is 1.3 deg wide: an angle of the bisector.
+bool glinting(std::span<const Pose> poses, StokesTable &out) {
+  const bool is_lit = Box()(poses, out);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Vec3<Body> half = normalized(poses[k].sun + poses[k].observer);
+    const double most = std::max({std::abs(half.x), std::abs(half.y), std::abs(half.z)});
+    for (std::size_t b = 0; b < 2; ++b)
+      out.i[2 * k + b] += 5 * std::pow(most, 2000);
+  }
+  return is_lit;
+}
+
+/// Within a glint at the tenth epoch.
+Turning into_a_glint(double seconds) {
+  const ObservedEpoch glint = pass(40).epochs[10];
+  const Vec3<Gcrs> x = normalized(glint.to_sun + glint.to_observer);
+  const Vec3<Gcrs> y = normalized(cross(x, Vec3<Gcrs>{0.2, 0.3, 1}));
+  const Vec3<Body> rate = Vec3<Body>{0.02, -0.01, 0.03} * degree;
+  const Quaternion there = quaternion_from(Rotation<Body, Gcrs>(x, y, cross(x, y)));
+  return {turned(there, rate * (seconds - glint.seconds)), rate};
+}
+
+TEST(AttitudeBank, AGlintNarrowerThanAFilterDoesNotMakeItSureOfAWrongPlace) {
+  Pursuit pursuit;
+  pursuit.truth = into_a_glint;
+  pursuit.light = glinting;
+  pursuit.attitude_sd = 6 * degree;
+  constexpr std::uint64_t seeds = 20;
+  int held = 0, wrong = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const AttitudeBank bank = followed(pursuit, seed, 16);
+    double near = 0; // weight of modes that do not rule the truth out at 1 in 1000
+    for (const TrackMode &mode : bank.modes())
+      near += off_of(mode, into_a_glint(150).attitude) < 16.3 ? std::exp(mode.log_weight) : 0;
+    if (std::getenv("UMOV_SHOW"))
+      std::printf("%llu near %g loss %d modes %zu off %g\n", (unsigned long long)seed, near, (int)bank.loss(), bank.modes().size(), off_of(bank.modes().front(), into_a_glint(150).attitude));
+    held += near > 0.05 ? 1 : 0;
+    wrong += near <= 0.05 && bank.loss() == TrackLoss::None ? 1 : 0;
+  }
+  EXPECT_GE(held, 18);
+  EXPECT_LE(wrong, 1);
+}
+
+} // namespace
+} // namespace umov

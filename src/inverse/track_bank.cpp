@@ -1,0 +1,273 @@
+#include <umov/inverse/track.h>
+
+#include "inverse/track_update.h"
+
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <umov/inverse/attitude_grid.h>
+#include <utility>
+
+namespace umov {
+
+using inverse::Belief;
+using inverse::FilterUpdate;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+TrackMode track_mode(const Turning &turning, const std::vector<double> &covariance, double scale,
+                     bool is_absolute, std::size_t bands, const std::vector<PartKind> &parts,
+                     const CurveErrors &errors) {
+  TrackMode out;
+  out.turning = turning;
+  const bool is_known = is_absolute && errors.scale_sd > 0;
+  out.scale = is_known ? 1 : scale;
+  const std::size_t gains = errors.has_clouds ? 1 : bands;
+  out.nuisances.assign(gains, out.scale);
+  for (const PartKind &part : parts)
+    out.nuisances.insert(out.nuisances.end(),
+                         (part.sd > 0 ? 1u : 0u) + (part.slope_sd > 0 ? 1u : 0u), 0.0);
+  const auto n = static_cast<Index>(inverse::nuisances_at + out.nuisances.size());
+  MatrixXd all = MatrixXd::Identity(n, n); // of parts: in units of their priors
+  all.topLeftCorner<6, 6>() = Eigen::Map<const MatrixXd>(covariance.data(), 6, 6);
+  const double common = out.scale * (is_known ? errors.scale_sd : 1),
+               own = out.scale * std::max(errors.zero_point_sd, 1e-6);
+  const auto count = static_cast<Index>(gains);
+  auto block = all.block(inverse::nuisances_at, inverse::nuisances_at, count, count);
+  block.setConstant(common * common);
+  block.diagonal().array() += own * own;
+  out.covariance.assign(all.data(), all.data() + all.size());
+  return out;
+}
+
+namespace {
+
+/// A filter and what it is learning.
+struct Learning {
+  TrackMode mode;
+  std::unique_ptr<FilterUpdate> update;
+  bool is_whole = false; ///< it is as narrow as it shall be
+};
+
+/// The transparency of an epoch in clouds is its own: as open as it began.
+void forget_gain(Belief &belief, double scale) {
+  constexpr double open = 2; // of clear sky
+  const Index at = inverse::nuisances_at;
+  belief.mean[at] = scale;
+  belief.covariance.row(at).setZero();
+  belief.covariance.col(at).setZero();
+  belief.covariance(at, at) = open * open * scale * scale;
+}
+
+/// Bhattacharyya's distance of two filters.
+double distance(const TrackMode &a, const TrackMode &b, const Belief &one, const Belief &other,
+                VectorXd &apart) {
+  apart = other.mean - one.mean;
+  apart.head<3>() = inverse::eigen_of(turn_between(a.turning.attitude, b.turning.attitude));
+  const MatrixXd middle = inverse::lower_root((one.covariance + other.covariance) / 2);
+  return inverse::square_in(middle, apart) / 8 +
+         (inverse::log_determinant(middle) -
+          (inverse::log_determinant(inverse::lower_root(one.covariance)) +
+           inverse::log_determinant(inverse::lower_root(other.covariance))) /
+              2) /
+             2;
+}
+
+double log_sum(double a, double b) {
+  return std::max(a, b) + std::log1p(std::exp(-std::abs(a - b)));
+}
+
+} // namespace
+
+AttitudeBank::AttitudeBank(std::vector<TrackMode> modes, PoseLighting light,
+                           std::vector<std::string> bands, std::vector<PartKind> parts,
+                           const TrackOptions &options)
+    : modes_(std::move(modes)), light_(std::move(light)), bands_(std::move(bands)),
+      parts_(std::move(parts)), options_(options) {
+  TrackStep none;
+  settle(none);
+}
+
+Result<TrackStep> AttitudeBank::step(const ObservedCurve &epoch, double seconds) {
+  for (TrackMode &mode : modes_)
+    mode = turned_on(mode, seconds, options_.rate_noise);
+  TrackStep out;
+  UMOV_TRY(learn(epoch, out));
+  settle(out);
+  look_for_loss(out);
+  return out;
+}
+
+/// All filters side by side, so that the light of all their points comes in one batch.
+Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
+  const CurveLikelihood likelihood(epoch, options_.errors);
+  out.measurements = likelihood.measurements();
+  if (out.measurements == 0)
+    return {};
+  std::vector<std::size_t> column(bands_.size());
+  for (std::size_t b = 0; b < column.size(); ++b)
+    column[b] = b;
+  const CurveModel model(epoch, light_, column, parts_);
+  std::size_t next_number = 1;
+  std::vector<Learning> all;
+  for (TrackMode &mode : modes_) {
+    next_number = std::max(next_number, mode.number + 1);
+    Belief belief = inverse::belief_of(mode);
+    if (options_.errors.has_clouds)
+      forget_gain(belief, mode.scale);
+    all.push_back({std::move(mode), std::make_unique<FilterUpdate>(std::move(belief), likelihood)});
+  }
+  const std::size_t most = 3 * all.size() + 24;
+  constexpr double straight = 25; // squares of errors that a line may miss over a filter
+  for (;;) {
+    std::vector<Turning> asked;
+    std::vector<std::size_t> of;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (!all[k].update->is_done()) {
+        of.push_back(k);
+        for (std::size_t which = 0; which < FilterUpdate::asked; ++which)
+          asked.push_back(all[k].update->attitude(which));
+      }
+    if (of.empty())
+      break;
+    const bool is_lit = model.for_each(
+        asked, {}, options_.threads, [&](std::size_t k, const ModelLight &light) {
+          all[of[k / FilterUpdate::asked]].update->take(k % FilterUpdate::asked, light);
+        });
+    if (!is_lit)
+      return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+    out.poses_lit += asked.size();
+    for (const std::size_t k : of) {
+      const FilterUpdate::Bend bend =
+          all[k].is_whole ? FilterUpdate::Bend{} : all[k].update->bend();
+      if (!(bend.square > straight) || all.size() + 2 > most) {
+        all[k].is_whole = true;
+        all[k].update->step();
+        continue;
+      }
+      const Belief whole = all[k].update->before();
+      const TrackMode mode = all[k].mode;
+      const auto parts = inverse::split(whole, bend.column);
+      for (std::size_t p = 0; p < parts.size(); ++p) {
+        Learning part{mode, std::make_unique<FilterUpdate>(parts[p].second, likelihood)};
+        part.mode.log_weight += std::log(parts[p].first);
+        const bool is_middle = 2 * p + 1 == parts.size();
+        part.mode.number = is_middle ? mode.number : next_number++;
+        if (is_middle)
+          all[k] = std::move(part);
+        else
+          all.push_back(std::move(part));
+      }
+    }
+  }
+  const auto best = std::ranges::max_element(all, {}, [](const Learning &one) {
+    return one.mode.log_weight + one.update->log_evidence();
+  });
+  out.i = best->update->light().i;
+  out.q = best->update->light().q;
+  out.u = best->update->light().u;
+  modes_.clear();
+  for (Learning &one : all) {
+    inverse::put(one.update->after(), one.mode);
+    one.mode.log_weight += one.update->log_evidence();
+    one.mode.chi2 += one.update->chi2();
+    one.mode.measurements += out.measurements;
+    out.chi2.push_back(one.update->chi2());
+    modes_.push_back(std::move(one.mode));
+  }
+  return {};
+}
+
+/// Heaviest first, without the hopeless, what became one as one, weights that add up to one.
+void AttitudeBank::settle(TrackStep &out) {
+  out.chi2.resize(modes_.size(), std::nan(""));
+  std::vector<std::size_t> order(modes_.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    order[k] = k;
+  std::ranges::stable_sort(order, std::greater<>(),
+                           [&](std::size_t k) { return modes_[k].log_weight; });
+  std::vector<TrackMode> modes;
+  std::vector<double> chi2;
+  for (const std::size_t k : order) {
+    modes.push_back(std::move(modes_[k]));
+    chi2.push_back(out.chi2[k]);
+  }
+  modes_ = std::move(modes);
+  out.chi2 = std::move(chi2);
+  drop_light(out);
+  join_near(out);
+  double all = -std::numeric_limits<double>::infinity();
+  for (const TrackMode &mode : modes_)
+    all = std::isfinite(all) ? log_sum(all, mode.log_weight) : mode.log_weight;
+  for (TrackMode &mode : modes_)
+    mode.log_weight -= all;
+}
+
+void AttitudeBank::drop_light(TrackStep &out) {
+  constexpr double least = -20;
+  std::size_t kept = 0;
+  while (kept < modes_.size() && modes_[kept].log_weight >= modes_[0].log_weight + least)
+    ++kept;
+  for (std::size_t k = kept; k < modes_.size(); ++k)
+    out.dropped.push_back(modes_[k].number);
+  modes_.resize(kept);
+  out.chi2.resize(kept);
+}
+
+void AttitudeBank::join_near(TrackStep &out) {
+  constexpr double one = 0.125; // a standard deviation apart, if both are as wide
+  std::vector<Belief> beliefs;
+  for (const TrackMode &mode : modes_)
+    beliefs.push_back(inverse::belief_of(mode));
+  for (std::size_t a = 0; a < modes_.size(); ++a)
+    for (std::size_t b = a + 1; b < modes_.size();) {
+      VectorXd apart;
+      if (!(distance(modes_[a], modes_[b], beliefs[a], beliefs[b], apart) < one)) {
+        ++b;
+        continue;
+      }
+      // Mean and covariance of both together.
+      const double both = log_sum(modes_[a].log_weight, modes_[b].log_weight),
+                   part = std::exp(modes_[b].log_weight - both);
+      Belief joined = beliefs[a];
+      joined.mean += part * apart;
+      joined.covariance = (1 - part) * beliefs[a].covariance + part * beliefs[b].covariance +
+                          part * (1 - part) * apart * apart.transpose();
+      out.joined.emplace_back(modes_[b].number, modes_[a].number);
+      inverse::put(joined, modes_[a]);
+      modes_[a].log_weight = both;
+      beliefs[a] = inverse::belief_of(modes_[a]);
+      const auto at = static_cast<std::ptrdiff_t>(b);
+      modes_.erase(modes_.begin() + at);
+      beliefs.erase(beliefs.begin() + at);
+      out.chi2.erase(out.chi2.begin() + at);
+    }
+}
+
+void AttitudeBank::look_for_loss(const TrackStep &now) {
+  constexpr double unlikely = 1e-3;
+  constexpr std::size_t several = 3;
+  if (now.measurements > 0) {
+    const auto count = static_cast<double>(now.measurements);
+    const bool is_missed =
+        chi2_probability(now.chi2.front(), count) < unlikely && now.chi2.front() > 2 * count;
+    misses_ = is_missed ? misses_ + 1 : 0;
+    if (misses_ >= several)
+      loss_ = TrackLoss::Misfit;
+  }
+  constexpr double open_rad = 1, light = 0.01;
+  double open = 0;
+  for (const TrackMode &mode : modes_) {
+    const Belief belief = inverse::belief_of(mode);
+    const double most = belief.covariance.diagonal().head<3>().maxCoeff();
+    open += most > open_rad * open_rad ? std::exp(mode.log_weight) : 0;
+  }
+  if (loss_ == TrackLoss::None && open > light)
+    loss_ = TrackLoss::Open;
+}
+
+} // namespace umov

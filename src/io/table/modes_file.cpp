@@ -1,0 +1,114 @@
+#include <umov/io/modes_file.h>
+
+#include "io/table/text_table.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/core/quantity.h>
+
+namespace umov {
+namespace {
+
+/// Cells of one table by name.
+class ModesTable {
+public:
+  ModesTable(const TextTable &table, const std::string &file) : table_(table), file_(file) {}
+  [[nodiscard]] bool has(std::string_view name) const {
+    return column_named(table_, name).has_value();
+  }
+  [[nodiscard]] Result<double> number(std::size_t row, const std::string &name) const {
+    constexpr double most = 1e30;
+    const auto column = column_named(table_, name);
+    if (!column)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("modes without the column \"{}\"; modes.ecsv of umov invert pose, spin "
+                              "or track was expected",
+                              name),
+                  {file_});
+    return number_in(table_, row, *column, -most, most, "a number", file_);
+  }
+  [[nodiscard]] Result<Quaternion> attitude(std::size_t row) const;
+  [[nodiscard]] Result<std::vector<double>> covariance(std::size_t row, bool has_rates) const;
+
+private:
+  const TextTable &table_;
+  const std::string &file_;
+};
+
+Result<Quaternion> ModesTable::attitude(std::size_t row) const {
+  UMOV_ASSIGN(w, number(row, "qw"));
+  UMOV_ASSIGN(x, number(row, "qx"));
+  UMOV_ASSIGN(y, number(row, "qy"));
+  UMOV_ASSIGN(z, number(row, "qz"));
+  const double length = std::sqrt(w * w + x * x + y * y + z * z);
+  constexpr double rounding = 1e-3; // of tables that were made shorter by hand
+  if (!(std::abs(length - 1) < rounding))
+    return fail(ErrorCode::BadInput,
+                fmt::format("qw, qx, qy, qz are of length {:.6g}; a quaternion of length 1 was "
+                            "expected",
+                            length),
+                {file_, table_.lines[row]});
+  return Quaternion{w / length, x / length, y / length, z / length};
+}
+
+Result<std::vector<double>> ModesTable::covariance(std::size_t row, bool has_rates) const {
+  const char *const axes[] = {"x", "y", "z", "wx", "wy", "wz"};
+  const std::size_t n = has_rates ? 6 : 3;
+  std::vector<double> out(n * n);
+  for (std::size_t r = 0; r < n; ++r)
+    for (std::size_t c = r; c < n; ++c) {
+      const std::string name = fmt::format("cov_{}{}", axes[r], axes[c]);
+      UMOV_ASSIGN(value, number(row, name));
+      if (r == c && !(value > 0))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} = {}; a variance above 0 was expected", name, value),
+                    {file_, table_.lines[row]});
+      out[r * n + c] = out[c * n + r] = value;
+    }
+  return out;
+}
+
+Result<ModesRow> mode_of(const ModesTable &table, std::size_t row, bool has_rates) {
+  ModesRow out;
+  UMOV_ASSIGN(weight, table.number(row, "weight"));
+  out.weight = weight;
+  if (table.has("scale")) {
+    UMOV_ASSIGN(scale, table.number(row, "scale"));
+    out.scale = scale;
+  }
+  UMOV_ASSIGN(attitude, table.attitude(row));
+  out.attitude = attitude;
+  if (has_rates) {
+    UMOV_ASSIGN(x, table.number(row, "rate_x"));
+    UMOV_ASSIGN(y, table.number(row, "rate_y"));
+    UMOV_ASSIGN(z, table.number(row, "rate_z"));
+    constexpr double degree = pi / 180;
+    out.rate_rad_s = {x * degree, y * degree, z * degree};
+  }
+  UMOV_ASSIGN(covariance, table.covariance(row, has_rates));
+  out.covariance = std::move(covariance);
+  return out;
+}
+
+} // namespace
+
+Result<ModesFile> read_modes_text(std::string_view text, const std::string &file) {
+  UMOV_ASSIGN(table, read_text_table(text, file));
+  const ModesTable cells(table, file);
+  ModesFile out;
+  out.notes = table.notes;
+  out.has_rates = cells.has("rate_x");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    UMOV_ASSIGN(mode, mode_of(cells, row, out.has_rates));
+    if (mode.weight > 0)
+      out.rows.push_back(std::move(mode));
+  }
+  if (out.rows.empty())
+    return fail(ErrorCode::BadInput,
+                "no mode has a weight above 0; modes.ecsv of umov invert pose, spin or track was "
+                "expected",
+                {file});
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,187 @@
+#include <umov/jobs/invert.h>
+
+#include "jobs/invert_between.h"
+#include "jobs/invert_light.h"
+#include "jobs/track_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numeric>
+#include <umov/core/quantity.h>
+
+namespace umov::jobs {
+namespace {
+
+/// As state.json tells it, to the digits that it has: a tracking that goes on has the same steps.
+Epoch<Utc> told(Epoch<Utc> time) {
+  const auto read = utc_from_iso(to_iso_exact(time));
+  return read ? *read : time;
+}
+
+/// Epochs [first, first + count) of a light curve.
+ObservedLightCurve part_of(const ObservedLightCurve &all, std::size_t first, std::size_t count) {
+  ObservedLightCurve out = all;
+  const auto cut = [&](auto &rows) {
+    rows = {rows.begin() + static_cast<std::ptrdiff_t>(first),
+            rows.begin() + static_cast<std::ptrdiff_t>(first + count)};
+  };
+  cut(out.curve.epochs);
+  cut(out.geometry);
+  const double begin = out.curve.epochs.empty() ? 0 : out.curve.epochs.front().seconds;
+  for (ObservedEpoch &epoch : out.curve.epochs)
+    epoch.seconds -= begin;
+  const auto keep = [&](auto &rows) {
+    std::erase_if(rows,
+                  [&](const auto &row) { return row.epoch < first || row.epoch >= first + count; });
+    for (auto &row : rows)
+      row.epoch -= first;
+  };
+  keep(out.curve.samples);
+  keep(out.curve.counts);
+  return out;
+}
+
+/// One epoch in the bands of the scenario.
+ObservedCurve epoch_of(const ObservedLightCurve &all, std::size_t epoch,
+                       const std::vector<std::string> &bands) {
+  ObservedCurve out = part_of(all, epoch, 1).curve;
+  for (ObservedSample &sample : out.samples)
+    sample.band = all.column[sample.band];
+  for (ObservedCount &count : out.counts)
+    count.band = all.column[count.band];
+  out.bands = bands;
+  return out;
+}
+
+void tell(const TrackStep &step, const std::string &time, TrackHistory &out) {
+  for (const std::size_t number : step.dropped)
+    out.events.push_back(fmt::format("{}: mode {} fell below e^-20 of the best", time, number));
+  for (const auto &[one, other] : step.joined)
+    out.events.push_back(fmt::format("{}: mode {} became one with mode {}", time, one, other));
+}
+
+/// A bank on its way through the epochs of a light curve.
+struct Following {
+  TrackHistory history;
+  EndMember fitted; ///< [epoch * bands + band] of the light curve's own bands
+};
+
+void put_light(const TrackStep &step, const ObservedLightCurve &observed, EndMember &out) {
+  for (const std::size_t column : observed.column) {
+    out.i.push_back(step.i.empty() ? std::nan("") : step.i[column]);
+    out.q.push_back(step.i.empty() ? std::nan("") : step.q[column]);
+    out.u.push_back(step.i.empty() ? std::nan("") : step.u[column]);
+  }
+}
+
+Result<Following> follow(AttitudeBank &bank, const ObservedLightCurve &observed,
+                         const TrackFrame &frame, TrackStart &now, const Monitor &monitor) {
+  Following out;
+  std::vector<std::string> missed; // times that were not explained, the last ones
+  for (std::size_t e = 0; e < observed.geometry.size(); ++e) {
+    monitor.advance("epochs", e, observed.geometry.size());
+    const Epoch<Utc> time = told(observed.geometry[e].time);
+    UMOV_ASSIGN(step,
+                bank.step(epoch_of(observed, e, frame.bands), seconds_between(time, now.time)));
+    now.time = time;
+    now.modes = bank.modes();
+    now.misses = bank.misses();
+    const std::string utc = to_iso_exact(time);
+    for (std::size_t k = 0; k < now.modes.size(); ++k)
+      out.history.rows.push_back({utc, now.modes[k], step.chi2[k], step.measurements});
+    tell(step, to_iso(time), out.history);
+    put_light(step, observed, out.fitted);
+    out.history.poses_lit += step.poses_lit;
+    ++out.history.epochs;
+    missed.push_back(to_iso(time));
+    if (bank.misses() == 0 && step.measurements > 0)
+      missed.clear();
+    if (bank.loss() == TrackLoss::None)
+      continue;
+    out.history.loss = bank.loss();
+    out.history.lost_utc = bank.loss() == TrackLoss::Misfit ? missed.front() : to_iso(time);
+    break;
+  }
+  return out;
+}
+
+/// The modes as they were at second 0 of a curve that ends now.
+PoseAnswer at_begin(PoseAnswer answer, const ObservedCurve &curve) {
+  for (PoseMode &mode : answer.modes)
+    mode.turning.attitude = attitude_at(mode.turning, -curve.epochs.back().seconds);
+  return answer;
+}
+
+/// modes.ecsv, in the form of umov invert spin, at the last epoch.
+Table last_modes(const PoseAnswer &answer, const TrackStart &now) {
+  Table out = modes_table(answer, true);
+  const std::string time = to_iso_exact(now.time);
+  out.note(epoch_note, time);
+  out.note(until_note, time);
+  out.note(median_note, fmt::format("{}", now.median_i));
+  out.note(floor_note, fmt::format("{}", now.floor));
+  out.note(verdict_note, now.searched);
+  return out;
+}
+
+} // namespace
+
+Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &request,
+                               const TrackRequest &track, const JobOptions &options,
+                               const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics, monitor.cancel));
+  take_apart(ready, request, options, diagnostics, monitor.cancel);
+  TrackFrame frame{{}, parts_of(ready), request.errors, ready.observed.curve.is_absolute};
+  for (const Band &band : scenario.bands)
+    frame.bands.push_back(band.name);
+  UMOV_ASSIGN(now, read_track_start(track.start, frame, track.rate_sd * rad_per_deg));
+  frame.errors.median_i = now.median_i;
+  frame.errors.floor = now.floor = std::max(request.errors.floor, now.floor);
+  const auto &geometry = ready.observed.geometry;
+  std::size_t before = 0;
+  while (before < geometry.size() && seconds_between(told(geometry[before].time), now.time) <= 0)
+    ++before;
+  if (before == geometry.size())
+    return fail(ErrorCode::BadInput,
+                fmt::format("no observation is later than {}, up to which the start has its own "
+                            "data; later ones are what is followed",
+                            to_iso(now.time)),
+                {request.observations.front()});
+  ObservedLightCurve observed = part_of(ready.observed, before, geometry.size() - before);
+  const bool is_quick = request.method == LightMethod::Masks;
+  const auto light = is_quick ? first_lighting(ready, options.threads, monitor)
+                              : searched_lighting(ready, options.threads, monitor);
+  AttitudeBank bank(now.modes, light, frame.bands, frame.parts,
+                    {frame.errors, track.rate_noise * rad_per_deg, options.threads});
+  bank.set_misses(now.misses);
+  UMOV_ASSIGN(found, follow(bank, observed, frame, now, monitor));
+  found.history.before = before;
+  observed = part_of(observed, 0, found.history.epochs);
+  keep_masks(ready);
+  const PoseAnswer answer = answer_of(now, frame);
+  const auto whole_light = lighting_of(ready.light, options.threads, monitor);
+  const auto symmetries = find_symmetries(whole_light, scenario.seed);
+  Judgement judgement = judge_track(now, frame, found.history, answer, observed.curve, found.fitted,
+                                    symmetries);
+  UMOV_TRY(judge_direct_light(scenario, request, ready, observed.curve,
+                              at_begin(answer, observed.curve), options, monitor, judgement));
+  Inversion out;
+  out.verdict = judgement.verdict;
+  out.summary = track_summary(now, found.history, answer, judgement);
+  out.json = track_json(now, found.history, answer, judgement, symmetries);
+  out.state = state_json(now, frame, found.history.loss);
+  out.tables = {{"modes", last_modes(answer, now)},
+                {"track", track_table(found.history, frame)},
+                {"fit", fit_table(observed, found.fitted, frame.errors)}};
+  out.page = track_page("Followed: " + scenario.title, out.tables[2].table, out.tables[1].table,
+                        out.summary);
+  out.inputs = observed.inputs;
+  out.inputs.insert(out.inputs.end(), now.inputs.begin(), now.inputs.end());
+  out.seed = scenario.seed;
+  out.light = light_used(ready, scenario, diagnostics);
+  monitor.tell(fmt::format("{} poses lit", found.history.poses_lit));
+  return out;
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,231 @@
+#include "jobs/track_start.h"
+
+#include "jobs/invert_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
+#include <umov/io/modes_file.h>
+
+namespace umov::jobs {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+/// A note of modes.ecsv. BadInput without it.
+Result<std::string> note_of(const ModesFile &file, const std::string &path, const char *key) {
+  const auto found = file.notes.find(key);
+  if (found != file.notes.end())
+    return found->second;
+  return fail(ErrorCode::BadInput,
+              fmt::format("the header does not say {}, which modes.ecsv of umov invert pose, spin "
+                          "and track do: ask again with this version, or write a line \"# {}: ...\"",
+                          key, key),
+              {path});
+}
+
+Result<Epoch<Utc>> time_of(const ModesFile &file, const std::string &path, const char *key) {
+  UMOV_ASSIGN(text, note_of(file, path, key));
+  const auto time = utc_from_iso(text);
+  if (!time)
+    return fail(ErrorCode::BadInput, fmt::format("{}: {}", key, time.error().message), {path});
+  return *time;
+}
+
+Result<double> number_of(const ModesFile &file, const std::string &path, const char *key) {
+  UMOV_ASSIGN(text, note_of(file, path, key));
+  const auto value = parse_number(text);
+  if (!value || !(*value >= 0))
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} = \"{}\"; a number of 0 or more was expected", key,
+                            printable(text)),
+                {path});
+  return *value;
+}
+
+/// The rate of a body that was taken for one that does not turn.
+std::vector<double> with_rate(const std::vector<double> &attitude, double rate_sd) {
+  std::vector<double> out(36, 0);
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c)
+      out[6 * r + c] = attitude[3 * r + c];
+    out[6 * (r + 3) + r + 3] = rate_sd * rate_sd;
+  }
+  return out;
+}
+
+Result<TrackStart> start_of_modes(const std::string &text, const std::string &path,
+                                  const TrackFrame &frame, double rate_sd) {
+  UMOV_ASSIGN(file, read_modes_text(text, path));
+  TrackStart out;
+  UMOV_ASSIGN(epoch, time_of(file, path, epoch_note));
+  UMOV_ASSIGN(until, time_of(file, path, until_note));
+  UMOV_ASSIGN(median, number_of(file, path, median_note));
+  UMOV_ASSIGN(floor, number_of(file, path, floor_note));
+  UMOV_ASSIGN(searched, note_of(file, path, verdict_note));
+  out.time = until;
+  out.median_i = median;
+  out.floor = floor;
+  out.searched = searched;
+  for (const ModesRow &row : file.rows) {
+    const auto covariance =
+        file.has_rates ? row.covariance : with_rate(row.covariance, rate_sd);
+    TrackMode mode = track_mode({row.attitude, row.rate_rad_s}, covariance, row.scale,
+                                frame.is_absolute, frame.bands.size(), frame.parts, frame.errors);
+    mode.number = out.modes.size() + 1;
+    mode.log_weight = std::log(row.weight);
+    if (file.has_rates)
+      mode = turned_on(mode, seconds_between(until, epoch), 0);
+    out.modes.push_back(std::move(mode));
+  }
+  return out;
+}
+
+/// What the unknowns of a state are, in words that must be the same.
+ordered_json frame_json(const TrackFrame &frame) {
+  ordered_json parts = ordered_json::array();
+  for (const PartKind &part : frame.parts)
+    parts.push_back({{"name", part.name}, {"sd", part.sd}, {"slope_sd", part.slope_sd}});
+  return {{"bands", frame.bands}, {"parts", parts}, {"clouds", frame.errors.has_clouds}};
+}
+
+TrackMode mode_of(const json &one) {
+  TrackMode out;
+  one.at("number").get_to(out.number);
+  const auto q = one.at("q").get<std::array<double, 4>>();
+  const auto w = one.at("rate_rad_s").get<std::array<double, 3>>();
+  out.turning = {{q[0], q[1], q[2], q[3]}, {w[0], w[1], w[2]}};
+  one.at("nuisances").get_to(out.nuisances);
+  one.at("covariance").get_to(out.covariance);
+  one.at("log_weight").get_to(out.log_weight);
+  one.at("scale").get_to(out.scale);
+  one.at("chi2").get_to(out.chi2);
+  one.at("measurements").get_to(out.measurements);
+  return out;
+}
+
+/// As many numbers as its unknowns are, and none that is not finite.
+bool is_whole(const TrackMode &mode, const TrackFrame &frame) {
+  std::size_t count = frame.errors.has_clouds ? 1 : frame.bands.size();
+  for (const PartKind &part : frame.parts)
+    count += (part.sd > 0 ? 1u : 0u) + (part.slope_sd > 0 ? 1u : 0u);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  return mode.nuisances.size() == count && mode.covariance.size() == (6 + count) * (6 + count) &&
+         std::ranges::all_of(mode.covariance, is_finite) &&
+         std::ranges::all_of(mode.nuisances, is_finite) && std::isfinite(mode.log_weight);
+}
+
+Result<TrackStart> start_of_state(const std::string &text, const std::string &path,
+                                  const TrackFrame &frame) {
+  const json all = json::parse(text, nullptr, false);
+  const auto no_state = [&](const std::string &why) {
+    return fail(ErrorCode::BadInput,
+                fmt::format("{}; state.json of umov invert track was expected", why), {path});
+  };
+  if (!all.is_object() || all.value("question", "") != "track" || !all.contains("modes"))
+    return no_state("no state of a tracking");
+  if (all.contains("lost_because") && all["lost_because"].is_string())
+    return fail(ErrorCode::BadInput,
+                fmt::format("that tracking was lost at {}: begin anew, with umov invert pose or "
+                            "spin of later observations",
+                            all.value("time_utc", "")),
+                {path});
+  const ordered_json wanted = frame_json(frame);
+  for (const char *key : {"bands", "parts", "clouds"})
+    if (!all.contains(key) || all[key] != json(wanted[key]))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("its {} are others than those of this scenario and these options: go "
+                              "on with the same, or begin from its modes.ecsv",
+                              key),
+                  {path});
+  TrackStart out;
+  try {
+    const auto time = utc_from_iso(all.at("time_utc").get<std::string>());
+    if (!time)
+      return no_state("time_utc: " + time.error().message);
+    out.time = *time;
+    all.at("median_intensity").get_to(out.median_i);
+    all.at("floor").get_to(out.floor);
+    all.at("search_verdict").get_to(out.searched);
+    all.at("misses").get_to(out.misses);
+    for (const json &one : all.at("modes"))
+      out.modes.push_back(mode_of(one));
+  } catch (const json::exception &e) {
+    return no_state(e.what());
+  }
+  if (out.modes.empty() || !std::ranges::all_of(out.modes, [&](const TrackMode &mode) {
+        return is_whole(mode, frame);
+      }))
+    return no_state("modes that are not whole");
+  return out;
+}
+
+} // namespace
+
+Result<TrackStart> read_track_start(const std::string &path, const TrackFrame &frame,
+                                    double rate_sd) {
+  namespace fs = std::filesystem;
+  if (path.empty())
+    return fail(ErrorCode::Usage,
+                "--start is missing: a tracking follows attitudes that are known by then. Name the "
+                "folder of an answer of umov invert pose or spin about the first observations");
+  fs::path file = path;
+  std::error_code none;
+  if (fs::is_directory(file, none)) {
+    const fs::path state = file / "state.json";
+    file = fs::exists(state, none) ? state : file / "modes.ecsv";
+    if (!fs::exists(file, none))
+      return fail(ErrorCode::BadInput,
+                  "the folder has neither state.json nor modes.ecsv; an answer of umov invert pose, "
+                  "spin or track was expected",
+                  {path});
+  }
+  UMOV_ASSIGN(text, read_file(file));
+  const std::string name = file.string();
+  const bool is_state = !text.empty() && text.front() == '{';
+  UMOV_ASSIGN(out, is_state ? start_of_state(text, name, frame)
+                            : start_of_modes(text, name, frame, rate_sd));
+  if (out.searched == name_of(Verdict::NoFit))
+    return fail(ErrorCode::BadInput,
+                "the search that it began with explains nothing (no_fit): there is no attitude to "
+                "be followed",
+                {name});
+  out.inputs.push_back({name, sha256_hex(text)});
+  return out;
+}
+
+std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLoss loss) {
+  ordered_json out;
+  out["program"] = "umov";
+  out["question"] = "track";
+  out["time_utc"] = to_iso_exact(state.time);
+  out.update(frame_json(frame));
+  out["median_intensity"] = state.median_i;
+  out["floor"] = state.floor;
+  out["search_verdict"] = state.searched;
+  out["misses"] = state.misses;
+  if (loss != TrackLoss::None)
+    out["lost_because"] = loss == TrackLoss::Misfit ? "misfit" : "open";
+  ordered_json modes = ordered_json::array();
+  for (const TrackMode &mode : state.modes) {
+    const Quaternion q = mode.turning.attitude;
+    const Vec3<Body> w = mode.turning.rate_rad_s;
+    modes.push_back({{"number", mode.number},
+                     {"log_weight", mode.log_weight},
+                     {"q", {q.w, q.x, q.y, q.z}},
+                     {"rate_rad_s", {w.x, w.y, w.z}},
+                     {"nuisances", mode.nuisances},
+                     {"covariance", mode.covariance},
+                     {"scale", mode.scale},
+                     {"chi2", mode.chi2},
+                     {"measurements", mode.measurements}});
+  }
+  out["modes"] = modes;
+  return out.dump(1) + "\n";
+}
+
+} // namespace umov::jobs
