@@ -2,7 +2,6 @@
 
 #include "inverse/track_update.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -13,11 +12,11 @@
 
 namespace umov {
 
-using inverse::Belief;
-using inverse::FilterUpdate;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using inverse::Belief;
+using inverse::FilterUpdate;
 
 TrackMode track_mode(const Turning &turning, const std::vector<double> &covariance, double scale,
                      bool is_absolute, std::size_t bands, const std::vector<PartKind> &parts,
@@ -121,7 +120,8 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
       forget_gain(belief, mode.scale);
     all.push_back({std::move(mode), std::make_unique<FilterUpdate>(std::move(belief), likelihood)});
   }
-  const std::size_t most = 3 * all.size() + 24;
+  constexpr std::size_t together = 60; // filters, where some are split
+  const std::size_t most = std::max(all.size(), together);
   constexpr double straight = 25; // squares of errors that a line may miss over a filter
   for (;;) {
     std::vector<Turning> asked;
@@ -134,8 +134,8 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
       }
     if (of.empty())
       break;
-    const bool is_lit = model.for_each(
-        asked, {}, options_.threads, [&](std::size_t k, const ModelLight &light) {
+    const bool is_lit =
+        model.for_each(asked, {}, options_.threads, [&](std::size_t k, const ModelLight &light) {
           all[of[k / FilterUpdate::asked]].update->take(k % FilterUpdate::asked, light);
         });
     if (!is_lit)

@@ -122,8 +122,7 @@ std::vector<std::pair<double, Belief>> split(const Belief &belief, Index column)
                    narrower = 0.6715662887;
   const VectorXd along = lower_root(belief.covariance).col(column);
   std::vector<std::pair<double, Belief>> out;
-  for (const auto &[weight, shift] :
-       {std::pair{side, -apart}, {middle, 0.0}, {side, apart}}) {
+  for (const auto &[weight, shift] : {std::pair{side, -apart}, {middle, 0.0}, {side, apart}}) {
     Belief one = belief;
     one.mean += shift * along;
     one.covariance -= (1 - narrower * narrower) * along * along.transpose();

@@ -24,8 +24,8 @@ public:
   void step();
   [[nodiscard]] bool is_done() const { return is_done_; }
 
-  /// Before the first step: what the data's line bends by over the belief, in squares of errors, and
-  /// along which column of its root most.
+  /// Before the first step: what the data's line bends by over the belief, in squares of errors,
+  /// and along which column of its root most.
   struct Bend {
     Eigen::Index column = 0;
     double square = 0;

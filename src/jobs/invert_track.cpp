@@ -162,8 +162,8 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
   const PoseAnswer answer = answer_of(now, frame);
   const auto whole_light = lighting_of(ready.light, options.threads, monitor);
   const auto symmetries = find_symmetries(whole_light, scenario.seed);
-  Judgement judgement = judge_track(now, frame, found.history, answer, observed.curve, found.fitted,
-                                    symmetries);
+  Judgement judgement =
+      judge_track(now, frame, found.history, answer, observed.curve, found.fitted, symmetries);
   UMOV_TRY(judge_direct_light(scenario, request, ready, observed.curve,
                               at_begin(answer, observed.curve), options, monitor, judgement));
   Inversion out;

@@ -111,8 +111,8 @@ PlotFigure weights_figure(const Table &track, const TimeAxis &time) {
     for (std::size_t k = 0; k < number.size(); ++k)
       if (number[k] == wanted)
         of.push_back(k);
-    PlotLine line = line_of(track, rows_of(of, time), "weight",
-                            fmt::format("mode {}", wanted), colour);
+    PlotLine line =
+        line_of(track, rows_of(of, time), "weight", fmt::format("mode {}", wanted), colour);
     line.has_markers = of.size() < 3; // a line of one point is not seen
     out.lines.push_back(std::move(line));
     ++colour;
@@ -135,8 +135,8 @@ std::string track_page(const std::string &title, const Table &fit, const Table &
         first.push_back(k);
     const Rows heaviest = rows_of(first, time);
     PlotFigure rates{"Rate of the heaviest attitude, body axes", time.title, "rate [deg/s]", {}};
-    PlotFigure errors{"How well the heaviest attitude is known", time.title,
-                      "standard deviation [deg]", {}};
+    PlotFigure errors{
+        "How well the heaviest attitude is known", time.title, "standard deviation [deg]", {}};
     errors.has_log_y = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const char axis = "xyz"[k];

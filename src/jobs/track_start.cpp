@@ -21,11 +21,12 @@ Result<std::string> note_of(const ModesFile &file, const std::string &path, cons
   const auto found = file.notes.find(key);
   if (found != file.notes.end())
     return found->second;
-  return fail(ErrorCode::BadInput,
-              fmt::format("the header does not say {}, which modes.ecsv of umov invert pose, spin "
-                          "and track do: ask again with this version, or write a line \"# {}: ...\"",
-                          key, key),
-              {path});
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("the header does not say {}, which modes.ecsv of umov invert pose, spin "
+                  "and track do: ask again with this version, or write a line \"# {}: ...\"",
+                  key, key),
+      {path});
 }
 
 Result<Epoch<Utc>> time_of(const ModesFile &file, const std::string &path, const char *key) {
@@ -40,10 +41,10 @@ Result<double> number_of(const ModesFile &file, const std::string &path, const c
   UMOV_ASSIGN(text, note_of(file, path, key));
   const auto value = parse_number(text);
   if (!value || !(*value >= 0))
-    return fail(ErrorCode::BadInput,
-                fmt::format("{} = \"{}\"; a number of 0 or more was expected", key,
-                            printable(text)),
-                {path});
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("{} = \"{}\"; a number of 0 or more was expected", key, printable(text)),
+        {path});
   return *value;
 }
 
@@ -72,8 +73,7 @@ Result<TrackStart> start_of_modes(const std::string &text, const std::string &pa
   out.floor = floor;
   out.searched = searched;
   for (const ModesRow &row : file.rows) {
-    const auto covariance =
-        file.has_rates ? row.covariance : with_rate(row.covariance, rate_sd);
+    const auto covariance = file.has_rates ? row.covariance : with_rate(row.covariance, rate_sd);
     TrackMode mode = track_mode({row.attitude, row.rate_rad_s}, covariance, row.scale,
                                 frame.is_absolute, frame.bands.size(), frame.parts, frame.errors);
     mode.number = out.modes.size() + 1;
@@ -157,9 +157,8 @@ Result<TrackStart> start_of_state(const std::string &text, const std::string &pa
   } catch (const json::exception &e) {
     return no_state(e.what());
   }
-  if (out.modes.empty() || !std::ranges::all_of(out.modes, [&](const TrackMode &mode) {
-        return is_whole(mode, frame);
-      }))
+  if (out.modes.empty() ||
+      !std::ranges::all_of(out.modes, [&](const TrackMode &mode) { return is_whole(mode, frame); }))
     return no_state("modes that are not whole");
   return out;
 }
@@ -179,10 +178,11 @@ Result<TrackStart> read_track_start(const std::string &path, const TrackFrame &f
     const fs::path state = file / "state.json";
     file = fs::exists(state, none) ? state : file / "modes.ecsv";
     if (!fs::exists(file, none))
-      return fail(ErrorCode::BadInput,
-                  "the folder has neither state.json nor modes.ecsv; an answer of umov invert pose, "
-                  "spin or track was expected",
-                  {path});
+      return fail(
+          ErrorCode::BadInput,
+          "the folder has neither state.json nor modes.ecsv; an answer of umov invert pose, "
+          "spin or track was expected",
+          {path});
   }
   UMOV_ASSIGN(text, read_file(file));
   const std::string name = file.string();

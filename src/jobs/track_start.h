@@ -14,11 +14,11 @@ inline constexpr double rad_per_deg = pi / 180;
 /// Where a bank of filters stands.
 struct TrackStart {
   std::vector<TrackMode> modes;
-  Epoch<Utc> time{};       ///< of the modes, and of the last data that they rest on
-  double median_i = 0;     ///< that floors are of
-  double floor = 0;        ///< that the search rested on
-  std::string searched;    ///< verdict of the search that it all began with
-  std::size_t misses = 0;  ///< AttitudeBank::misses
+  Epoch<Utc> time{};      ///< of the modes, and of the last data that they rest on
+  double median_i = 0;    ///< that floors are of
+  double floor = 0;       ///< that the search rested on
+  std::string searched;   ///< verdict of the search that it all began with
+  std::size_t misses = 0; ///< AttitudeBank::misses
   std::vector<InputFile> inputs;
 };
 /// What the filters' unknowns are of.
@@ -30,9 +30,9 @@ struct TrackFrame {
 };
 
 /// Reads the folder of an answer of umov invert pose, spin or track, its modes.ecsv or its
-/// state.json. Attitudes of `pose` hold until its data end, and their rate is 0 to `rate_sd` [rad/s];
-/// those of `spin` have turned until then. Usage where nothing is named, BadInput for what is no
-/// such answer, one of other bands or materials, and one without an attitude to be followed.
+/// state.json. Attitudes of `pose` hold until its data end, and their rate is 0 to `rate_sd`
+/// [rad/s]; those of `spin` have turned until then. Usage where nothing is named, BadInput for what
+/// is no such answer, one of other bands or materials, and one without an attitude to be followed.
 Result<TrackStart> read_track_start(const std::string &path, const TrackFrame &frame,
                                     double rate_sd);
 /// state.json: all digits, so that the next tracking goes on as if there had been no end.

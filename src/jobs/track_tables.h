@@ -17,8 +17,8 @@ struct TrackRow {
 };
 /// A tracking from its start to its end.
 struct TrackHistory {
-  std::vector<TrackRow> rows; ///< heaviest first at each epoch
-  std::vector<std::string> events; ///< modes that were dropped or joined, with the time
+  std::vector<TrackRow> rows;         ///< heaviest first at each epoch
+  std::vector<std::string> events;    ///< modes that were dropped or joined, with the time
   std::size_t epochs = 0, before = 0; ///< followed; not later than the start's own data
   std::string lost_utc;               ///< of the first epoch that was not explained; "": none was
   TrackLoss loss = TrackLoss::None;
@@ -39,9 +39,8 @@ Table track_table(const TrackHistory &history, const TrackFrame &frame);
 Judgement judge_track(const TrackStart &now, const TrackFrame &frame, const TrackHistory &history,
                       const PoseAnswer &answer, const ObservedCurve &curve, const EndMember &fitted,
                       const std::vector<BodySymmetry> &symmetries);
-std::string track_json(const TrackStart &now, const TrackHistory &history,
-                       const PoseAnswer &answer, const Judgement &judgement,
-                       const std::vector<BodySymmetry> &symmetries);
+std::string track_json(const TrackStart &now, const TrackHistory &history, const PoseAnswer &answer,
+                       const Judgement &judgement, const std::vector<BodySymmetry> &symmetries);
 std::string track_summary(const TrackStart &now, const TrackHistory &history,
                           const PoseAnswer &answer, const Judgement &judgement);
 /// Data and fit, the heaviest attitude and its rate against time, weights, innovations. Empty where

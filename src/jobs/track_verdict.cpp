@@ -89,15 +89,15 @@ Judgement judge_track(const TrackStart &now, const TrackFrame &frame, const Trac
   if (out.null_test.is_flagged())
     out.notes.push_back(fmt::format(
         "U of the scattering plane is not what the fit has: polarization of the instrument of "
-        "({:.4f} +- {:.4f}, {:.4f} +- {:.4f}) would explain it; calibrate, or suspect light between "
+        "({:.4f} +- {:.4f}, {:.4f} +- {:.4f}) would explain it; calibrate, or suspect light "
+        "between "
         "surfaces",
         out.null_test.q0, out.null_test.q0_sd, out.null_test.u0, out.null_test.u0_sd));
   return out;
 }
 
-std::string track_json(const TrackStart &now, const TrackHistory &history,
-                       const PoseAnswer &answer, const Judgement &judgement,
-                       const std::vector<BodySymmetry> &symmetries) {
+std::string track_json(const TrackStart &now, const TrackHistory &history, const PoseAnswer &answer,
+                       const Judgement &judgement, const std::vector<BodySymmetry> &symmetries) {
   using nlohmann::ordered_json;
   ordered_json out;
   out["program"] = "umov";
@@ -115,8 +115,8 @@ std::string track_json(const TrackStart &now, const TrackHistory &history,
   out["families"] = judgement.families.count;
   out["heaviest"] = judgement.families.heaviest;
   out["spread_deg"] = judgement.families.spread_deg;
-  out["light_between"] = judgement.light_between ? ordered_json(*judgement.light_between)
-                                                 : ordered_json();
+  out["light_between"] =
+      judgement.light_between ? ordered_json(*judgement.light_between) : ordered_json();
   out["axis_spread_deg"] = judgement.axis_spread_deg;
   ordered_json modes = ordered_json::array();
   for (std::size_t k = 0; k < answer.modes.size(); ++k) {

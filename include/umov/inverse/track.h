@@ -31,8 +31,9 @@ struct TrackMode {
   double chi2 = 0;              ///< of all innovations so far
   std::size_t measurements = 0; ///< as many numbers
 };
-/// A filter of an attitude and rate with their covariance, 6 x 6, row-major: gains of `bands` normal
-/// about `scale` (as it is, or as far as absolute light says), parts as far off as their priors.
+/// A filter of an attitude and rate with their covariance, 6 x 6, row-major: gains of `bands`
+/// normal about `scale` (as it is, or as far as absolute light says), parts as far off as their
+/// priors.
 TrackMode track_mode(const Turning &turning, const std::vector<double> &covariance, double scale,
                      bool is_absolute, std::size_t bands, const std::vector<PartKind> &parts,
                      const CurveErrors &errors);
@@ -48,9 +49,9 @@ enum class TrackLoss {
 
 /// What a bank made of an epoch.
 struct TrackStep {
-  std::vector<double> chi2;     ///< of the innovation, of each mode that is left; NaN: none
-  std::size_t measurements = 0; ///< numbers that were measured
-  std::vector<std::size_t> dropped;                        ///< modes below e^-20 of the best
+  std::vector<double> chi2;         ///< of the innovation, of each mode that is left; NaN: none
+  std::size_t measurements = 0;     ///< numbers that were measured
+  std::vector<std::size_t> dropped; ///< modes below e^-20 of the best
   std::vector<std::pair<std::size_t, std::size_t>> joined; ///< the first became part of the second
   /// Light of the heaviest mode [band], its parts as it has them; empty without measurements.
   std::vector<double> i, q, u;

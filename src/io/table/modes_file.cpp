@@ -20,11 +20,12 @@ public:
     constexpr double most = 1e30;
     const auto column = column_named(table_, name);
     if (!column)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("modes without the column \"{}\"; modes.ecsv of umov invert pose, spin "
-                              "or track was expected",
-                              name),
-                  {file_});
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("modes without the column \"{}\"; modes.ecsv of umov invert pose, spin "
+                      "or track was expected",
+                      name),
+          {file_});
     return number_in(table_, row, *column, -most, most, "a number", file_);
   }
   [[nodiscard]] Result<Quaternion> attitude(std::size_t row) const;
