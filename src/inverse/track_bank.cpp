@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <umov/core/quantity.h>
 #include <umov/inverse/attitude_grid.h>
 #include <utility>
 
@@ -259,7 +260,8 @@ void AttitudeBank::look_for_loss(const TrackStep &now) {
     if (misses_ >= several)
       loss_ = TrackLoss::Misfit;
   }
-  constexpr double open_rad = 1, light = 0.01;
+  const double open_rad = pi / std::sqrt(3.0); // points of it lie beyond half a turn
+  constexpr double light = 0.01;
   double open = 0;
   for (const TrackMode &mode : modes_) {
     const Belief belief = inverse::belief_of(mode);

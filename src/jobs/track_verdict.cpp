@@ -40,7 +40,7 @@ void note_doubts(const TrackStart &now, const TrackHistory &history, const PoseA
                                     "umov invert pose or spin anew with those observations",
                                     history.lost_utc));
   if (history.loss == TrackLoss::Open)
-    out.notes.push_back(fmt::format("lost at {}: by then the attitude is open to more than 1 rad; "
+    out.notes.push_back(fmt::format("lost at {}: by then the attitude is open all around some axis; "
                                     "ask umov invert pose or spin anew from there on",
                                     history.lost_utc));
   if (now.searched == name_of(Verdict::Undetermined))

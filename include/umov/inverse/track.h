@@ -44,7 +44,7 @@ TrackMode turned_on(const TrackMode &mode, double seconds, double rate_noise);
 enum class TrackLoss {
   None,
   Misfit, ///< no filter explains three measured epochs that follow each other
-  Open    ///< the attitude is less certain than 1 rad about some axis
+  Open    ///< the attitude is known to less than pi/sqrt(3) rad about some axis: it may be any
 };
 
 /// What a bank made of an epoch.
