@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""What an answer costs to be kept up to date while an object is observed: the light of all that the answer stands for at one more epoch, by
-masks in three bands on one core; and whether a job of curves of cubesats that is killed and goes on gives the same bytes.
+"""What it takes to follow an object while it is observed: `umov invert track` from the answer about the first half of a pass through the
+second, the time of each epoch more in one thread by masks; and whether that, killed and begun anew or cut in two, and a job of curves of
+cubesats that is killed and goes on, give the same bytes.
 
-usage: live.py [--object hst] [--curves 3] [--snr 100] [--seed 1] [--umov PATH] [--work DIR] [options of umov invert pose]
-Needs numpy and the package umov (PYTHONPATH=build/release/python .deps/venv/bin/python bench/inverse/live.py). umov has no filter that
-follows an attitude: this is the light that one would need, of the draws of samples.ecsv and of the modes with eight points about each (the
-sigma points of attitude and scale; Julier & Uhlmann 1997), not what it would do with it."""
+usage: live.py [--object hst] [--trials 3] [--curves 3] [--snr 100] [--seed 1] [--umov PATH] [--work DIR] [options of umov invert pose]
+The time of an epoch is that of all of them less that of one alone, over their number: masks and the judgement at the end are in both."""
 import argparse
 import contextlib
+import json
 import os
 import pathlib
 import random
@@ -18,45 +18,71 @@ import tempfile
 import time
 
 import blind
-import numpy as np
-import umov
-from mitsuba_truth import directions
 
-POINTS = 9  # of a mode
 TABLES = ("curves", "modes", "samples", "set95")
 
 
-def to_stars(q):
-    """Matrices that take body axes to the stars; q (n, 4), scalar first."""
-    w, x, y, z = np.asarray(q, float).T
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]).transpose(2, 0, 1)
+def epochs_of(path):
+    """Head of a CSV of observations, and the rows of each time."""
+    lines, epochs = path.read_text().splitlines(), {}
+    for line in lines[2:]:
+        epochs.setdefault(line.split(",")[0], []).append(line)
+    return lines[:2], list(epochs.values())
 
 
-def attitudes(path):
-    return np.array([[float(row[key]) for key in ("qw", "qx", "qy", "qz")] for row in blind.table_rows(path)])
+def write_epochs(path, head, epochs):
+    path.write_text("\n".join([*head, *(line for rows in epochs for line in rows)]) + "\n")
 
 
-def milliseconds(engine, rows, q):
-    """Of the light of all attitudes, for each epoch of the rows of a run."""
-    body_from_stars, out = to_stars(q).transpose(0, 2, 1), []
-    for row in {row["time_utc"]: row for row in rows}.values():
-        back = to_stars([[float(row[key]) for key in ("qw", "qx", "qy", "qz")]])[0]
-        sun, observer = (body_from_stars @ (back @ v) for v in directions(row))
-        began = time.perf_counter()
-        engine.evaluate(sun, observer)
-        out.append(1e3 * (time.perf_counter() - began))
-    return np.array(out)
+def follow(o, work, observations, start, out):
+    """Seconds of the processor's clock on the wall; verdict.json."""
+    began = time.perf_counter()
+    blind.run(o.umov, "invert", "track", work / observations, "--scenario", work / "fit.toml", "--start", work / start, "-o", work / out,
+              "--threads", 1, "-q", *o.follow, ok=(0, 4))
+    return time.perf_counter() - began, json.loads((work / out / "verdict.json").read_text())
 
 
-def times(o, work, rows):
-    engine = umov.Engine(work / "fit.toml", method="masks", threads=1)
-    draws, modes = (attitudes(work / f"answer/{name}.ecsv") for name in ("samples", "modes"))
-    for what, q in ((f"{len(draws)} draws", draws), (f"{len(modes)} modes, {POINTS} points each", np.repeat(modes, POINTS, axis=0))):
-        took = milliseconds(engine, rows, q)
-        print(f"{o.object}, {what}: an epoch more takes {np.median(took):.1f} ms in the median, {took.max():.1f} at most, of {len(took)} epochs",
-              flush=True)
+def same(one, other, names=("modes.ecsv", "state.json")):
+    return all((one / name).read_bytes() == (other / name).read_bytes() for name in names)
+
+
+def live(o, work, truth):
+    """One object from the answer about its first half on."""
+    head, epochs = epochs_of(work / "obs.csv")
+    half = len(epochs) // 2
+    middle = (half + len(epochs)) // 2
+    for name, some in (("first", epochs[:half]), ("rest", epochs[half:]), ("one", epochs[half:half + 1]), ("rest_a", epochs[half:middle]),
+                       ("rest_b", epochs[middle:])):
+        write_epochs(work / f"{name}.csv", head, some)
+    blind.run(o.umov, "invert", "pose", work / "first.csv", "--scenario", work / "fit.toml", "-o", work / "start", "-q", "--threads", 1,
+              *o.rest, ok=(0, 4))
+    start = json.loads((work / "start/verdict.json").read_text())
+    if start["verdict"] == "no_fit":
+        print(f"{o.object}: the first half explains nothing", flush=True)
+        return
+    follow(o, work, "one.csv", "start", "warm")  # masks are kept from here on
+    alone = min(follow(o, work, "one.csv", "start", "alone")[0] for _ in range(3))
+    seconds, verdict = follow(o, work, "rest.csv", "start", "whole")
+    per_epoch = (seconds - alone) / max(verdict["epochs"] - 1, 1)
+    best = verdict["modes"][0]
+    off = min(blind.apart(best["q"], twin) for twin in blind.twins(truth, verdict["symmetries"]))
+    print(f"{o.object}: start {start['verdict']} of {len(start['modes'])} modes; {verdict['verdict']}, {len(verdict['modes'])} modes, "
+          f"{off:.2f} deg off ({best['sd_deg']:.2f} told), {1e3 * per_epoch:.1f} ms an epoch of {verdict['epochs']}", flush=True)
+    is_cut = False
+    if follow(o, work, "rest_a.csv", "start", "cut_a")[1]["lost_utc"] is None:
+        follow(o, work, "rest_b.csv", "cut_a", "cut_b")
+        is_cut = same(work / "cut_b", work / "whole")
+    command = [o.umov, "invert", "track", work / "rest.csv", "--scenario", work / "fit.toml", "--start", work / "start", "-o",
+               work / "killed", "--threads", "1", "-q", *o.follow]
+    process = subprocess.Popen(list(map(str, command)))
+    time.sleep(0.9 * seconds)
+    is_killed = process.poll() is None
+    process.kill()
+    process.wait()
+    follow(o, work, "rest.csv", "start", "killed")
+    print(f"{o.object}: in two goes {'the same bytes' if is_cut else 'OTHER BYTES, or lost'}; "
+          f"{'killed' if is_killed else 'NOT KILLED IN TIME'} and begun anew "
+          f"{'the same bytes' if same(work / 'killed', work / 'whole') else 'OTHER BYTES'}", flush=True)
 
 
 def merged(o, job, work):
@@ -90,17 +116,20 @@ def killed(o, work, curves):
     print(f"{o.object}, {len(curves)} curves, killed {kills} times: {'the same bytes' if is_same else 'OTHER BYTES'}", flush=True)
 
 
-def curve(o, work, rng):
-    """obs.csv and fit.toml of an object in a random attitude; its rows without noise."""
+def curve(o, work, rng, step=12):
+    """obs.csv and fit.toml of an object in a random attitude; that attitude."""
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
         blind.run(o.umov, "mesh", "make", *words, "-o", mesh, "-q")
-    return blind.make_curve(o, work, meshes, 0, blind.inertial(blind.random_attitude(rng)), 12, rng)
+    truth = blind.random_attitude(rng)
+    blind.make_curve(o, work, meshes, 0, blind.inertial(truth), step, rng)
+    return truth
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--object", choices=blind.MESH, default="hst")
+    parser.add_argument("--trials", type=int, default=3, help="objects that are followed")
     parser.add_argument("--curves", type=int, default=3)
     parser.add_argument("--snr", type=float, default=100)
     parser.add_argument("--seed", type=int, default=1)
@@ -111,10 +140,9 @@ def main():
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     rng = random.Random(o.seed)
-    rows = curve(o, work, rng)
-    verdict, seconds = blind.asked(o, work, "pose", "--threads", 1)
-    print(f"{o.object}: {verdict['verdict']}, {len(verdict['modes'])} modes, {seconds:.1f} s", flush=True)
-    times(o, work, rows)
+    o.follow = o.rest[:o.rest.index("--grid")] + o.rest[o.rest.index("--grid") + 2:] if "--grid" in o.rest else o.rest
+    for _ in range(o.trials):
+        live(o, work, curve(o, work, rng, 6))
     o.object = "cubesat"
     curves = [work / f"curve_{k}.csv" for k in range(o.curves)]
     for path in curves:

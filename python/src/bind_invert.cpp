@@ -43,6 +43,15 @@ jobs::Inversion spin(const Scenario &scenario, const Request &request, double pe
   });
 }
 
+jobs::Inversion track(const Scenario &scenario, const Request &request, const std::string &start,
+                      double rate_noise, double rate_sd, const jobs::JobOptions &options,
+                      nb::handle watch) {
+  return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::invert_track(scenario, request, {start, rate_noise, rate_sd}, options, monitor,
+                              diagnostics);
+  });
+}
+
 jobs::Inversion material(const Scenario &scenario, const Request &request, const std::string &group,
                          const std::vector<std::string> &candidates,
                          const jobs::JobOptions &options, nb::handle watch) {
@@ -152,9 +161,12 @@ void bind_invert(nb::module_ &m) {
           "k"_a, nb::rv_policy::reference_internal)
       .def_ro("summary", &jobs::Inversion::summary)
       .def_ro("json", &jobs::Inversion::json)
-      .def_ro("page", &jobs::Inversion::page);
+      .def_ro("page", &jobs::Inversion::page)
+      .def_ro("state", &jobs::Inversion::state);
   m.def("invert_pose", &pose, "scenario"_a, "request"_a, "options"_a, "watch"_a.none());
   m.def("invert_spin", &spin, "scenario"_a, "request"_a, "period_s"_a, "has_aliases"_a, "axis"_a,
+        "options"_a, "watch"_a.none());
+  m.def("invert_track", &track, "scenario"_a, "request"_a, "start"_a, "rate_noise"_a, "rate_sd"_a,
         "options"_a, "watch"_a.none());
   m.def("invert_material", &material, "scenario"_a, "request"_a, "group"_a, "candidates"_a,
         "options"_a, "watch"_a.none());

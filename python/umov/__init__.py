@@ -18,7 +18,7 @@ from .engines import Engine, Light, random_poses
 from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
                      UmovWarning, UsageError, Where)
 from .flux_tables import flux_table
-from .inversions import Fit, Inversion, identify, invert_health, invert_material, invert_plan, invert_pose, invert_spin
+from .inversions import Fit, Inversion, identify, invert_health, invert_material, invert_plan, invert_pose, invert_spin, invert_track
 from .libraries import build_library
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
@@ -45,7 +45,7 @@ __all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceEr
            "NoResult", "NumericsError", "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums",
            "Table", "UmovWarning", "UsageError", "Where", "__version__", "band", "bands", "brdf", "build_library",
            "calibrate", "calibrate_channels", "conventions_version", "ephemeris", "example", "exposure", "flux_table", "identify",
-           "instrument", "instruments", "invert_health", "invert_material", "invert_plan", "invert_pose", "invert_spin",
+           "instrument", "instruments", "invert_health", "invert_material", "invert_plan", "invert_pose", "invert_spin", "invert_track",
            "materials", "mesh", "observe", "passes", "period", "plot", "propagate", "random_poses", "reduce", "render", "run",
            "scale", "schema", "score", "site_names", "source_revision", "standards", "tdm", "turnable", "utc"]
 

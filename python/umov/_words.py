@@ -11,7 +11,7 @@ _ARGUMENTS = {"alt": "alt_deg", "alternative": "alternatives", "phase": "phase_d
 _SAME = frozenset((
     "accept allow-bad-checksum allow-old-elements aperture-fwhm band bands calibration candidates cells change-per-s clouds colour "
     "device drift exposure-s false-alarm floor frames gap-s grid haze-sd height-m knot-s largest-floor longest-s mag mag-max method nm "
-    "norad object objects observer outliers peaks reflectance-sd samples scale-sd sd-p set shade shadow shortest-s side sky-mag sky-sd "
+    "norad object objects observer outliers peaks rate-noise rate-sd reflectance-sd samples scale-sd sd-p set shade shadow shortest-s side sky-mag sky-sd "
     "slope-sd sort start step-s stop sun sun-alt-max-deg threads time transparency-sd transparency-time-s up unit width-nm zero-point-sd").split())
 #: What several words of the command are together, and what is said of it alone.
 _TOGETHER = (("--visibility masks of signature and invert", 'method="masks" of umov.Engine and umov.Fit'),
@@ -23,15 +23,16 @@ _OPTION = re.compile(r"(?<![\w/.-])--([a-z]+(?:-[a-z]+)*)(?![\w/=-]|\.\w)")
 #: Verbs by what does the same here. A verb of a table such as "material list" stands before one that its name begins with.
 _VERBS = {"bands list": "bands()", "calibrate": "calibrate", "exposure": "exposure", "identify": "identify",
           "instrument list": "instruments()", "invert health": "invert_health", "invert material": "invert_material", "invert plan": "invert_plan",
-          "invert pose": "invert_pose", "invert spin": "invert_spin", "library build": "build_library", "material list": "materials()",
+          "invert pose": "invert_pose", "invert spin": "invert_spin", "invert track": "invert_track", "library build": "build_library",
+          "material list": "materials()",
           "observe": "observe", "orbit ephemeris": "ephemeris", "orbit propagate": "propagate", "passes": "passes", "period": "period",
           "reduce": "reduce", "render": "render", "run": "run", "signature": "Engine"}
 #: What only the command tells, which comes with the package.
 _OF_A_SHELL = ("doctor", "material index", "mesh check")
 _VERB = re.compile(rf"(?<![\w./-])umov ({'|'.join([*_VERBS, *_OF_A_SHELL])})\b(?! -)")
 #: A file that adapters made of what was given.
-_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle|orbit\.json|(?:light|baseline)(?:_\d+)?\.ecsv)")
-_GIVEN = {"mesh.obj": "mesh of arrays", "orbit.tle": "orbit", "orbit.json": "orbit"}
+_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle|orbit\.json|modes\.ecsv|state\.json|(?:light|baseline)(?:_\d+)?\.ecsv)")
+_GIVEN = {"mesh.obj": "mesh of arrays", "orbit.tle": "orbit", "orbit.json": "orbit", "modes.ecsv": "start", "state.json": "start"}
 
 
 def _curve(file: str) -> str:

@@ -40,9 +40,10 @@ void note_doubts(const TrackStart &now, const TrackHistory &history, const PoseA
                                     "umov invert pose or spin anew with those observations",
                                     history.lost_utc));
   if (history.loss == TrackLoss::Open)
-    out.notes.push_back(fmt::format("lost at {}: by then the attitude is open all around some axis; "
-                                    "ask umov invert pose or spin anew from there on",
-                                    history.lost_utc));
+    out.notes.push_back(
+        fmt::format("lost at {}: by then the attitude is open all around some axis; "
+                    "ask umov invert pose or spin anew from there on",
+                    history.lost_utc));
   if (now.searched == name_of(Verdict::Undetermined))
     out.notes.emplace_back("the search that it began with was undetermined: attitudes that its "
                            "modes leave out are not followed");
