@@ -334,6 +334,8 @@ def test_own_materials_go_with_the_satellite():
     lambda hst: umov.invert_pose([], EXAMPLES / "agena_maui.toml"),
     lambda hst: umov.invert_pose(umov.bands(), EXAMPLES / "agena_maui.toml"),
     lambda hst: umov.invert_spin(AGENA_PASS, EXAMPLES / "agena_maui.toml", axis="w"),
+    lambda hst: umov.invert_track(AGENA_PASS, EXAMPLES / "agena_maui.toml", 3),
+    lambda hst: umov.invert_track(AGENA_PASS, EXAMPLES / "agena_maui.toml", "", rate_noise=-1),
     lambda hst: umov.invert_material(AGENA_PASS, EXAMPLES / "agena_maui.toml", group="wing", candidates=["gold"]),
     lambda hst: umov.invert_material(AGENA_PASS, EXAMPLES / "agena_maui.toml", group="body", candidates="gold"),
     lambda hst: umov.invert_health(AGENA_PASS, EXAMPLES / "agena_maui.toml", drift={"wing": "gold"}),

@@ -193,6 +193,31 @@ AGENA, HST = EXAMPLES / "agena_maui.toml", EXAMPLES / "hst_maui.toml"
 GREEN = {"bands.set": ["nm:550"]}
 
 
+def test_tracking(command, tmp_path):
+    """From the command's folder and from an answer in memory; then on from what it left."""
+    still = {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20, **GREEN}
+    times = (("first", "2018-01-21T05:18:00Z", "2018-01-21T05:20:00Z"), ("second", "2018-01-21T05:20:20Z", "2018-01-21T05:21:00Z"),
+             ("third", "2018-01-21T05:21:20Z", "2018-01-21T05:22:00Z"))
+    curves = {name: umov.run(AGENA, set={**still, "time.start": start, "time.stop": stop}) for name, start, stop in times}
+    for name, curve in curves.items():
+        curve.write(tmp_path / f"{name}.ecsv")
+    ours = umov.invert_pose(curves["first"], AGENA, set=GREEN, fit=umov.Fit(grid=1000))
+    options = ["--scenario", AGENA, "--set", 'bands.set=["nm:550"]', "-q"]
+    command("invert", "pose", "first.ecsv", "--grid", 1000, *options, "-o", "pose")
+    before = "pose"
+    for name in ("second", "third"):
+        command("invert", "track", f"{name}.ecsv", "--start", before, "--rate-noise", 2e-4, *options, "-o", name)
+        for start in (tmp_path / before, ours):
+            found = umov.invert_track(curves[name], AGENA, start, rate_noise=2e-4, set=GREEN)
+            assert found.state == (tmp_path / name / "state.json").read_text()
+            assert found.values == json.loads((tmp_path / name / "verdict.json").read_text())
+            assert sorted(found.tables) == ["fit", "modes", "track"]
+            for table in found.tables:
+                found.tables[table].write(tmp_path / "ours.ecsv")
+                assert (tmp_path / "ours.ecsv").read_bytes() == (tmp_path / name / f"{table}.ecsv").read_bytes(), table
+        before, ours = name, found
+
+
 @pytest.mark.parametrize(("words", "scenario", "changes", "ours"), [
     (["pose", "--grid", 1000, "--outliers", 0.05, "--floor", 0.03], AGENA,
      {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 40},

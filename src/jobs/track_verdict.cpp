@@ -45,8 +45,8 @@ void note_doubts(const TrackStart &now, const TrackHistory &history, const PoseA
                     "ask umov invert pose or spin anew from there on",
                     history.lost_utc));
   if (now.searched == name_of(Verdict::Undetermined))
-    out.notes.emplace_back("the search that it began with was undetermined: attitudes that its "
-                           "modes leave out are not followed");
+    out.notes.emplace_back("the search that it began with was undetermined, as its own notes say: "
+                           "attitudes that its modes leave out are not followed");
   if (answer.measurements == 0)
     out.notes.emplace_back("nothing was measured: the attitude is that of the start, turned on");
   constexpr double unlikely = 1e-3; // as of a search

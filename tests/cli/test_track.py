@@ -99,19 +99,19 @@ def test_a_turning_body_is_followed_from_a_spin(made, tmp_path):
     shutil.copy(made / "cubesat.obj", tmp_path)
     write_scene(tmp_path, "truth", "rays", 4)
     text = (tmp_path / "truth.toml").read_text()
-    (tmp_path / "truth.toml").write_text(spinning(text.replace("step_s = 4", "step_s = 12"), [0.0, 0.0, 3.0], 4))
+    turning = spinning(text, [9.0, 0.0, 0.0], 4)
+    (tmp_path / "truth.toml").write_text(turning.replace("[0.5, 0.5, -0.5, 0.5]", "[0.6, 0.0, 0.8, 0.0]"))
     assert call(tmp_path, "run", "truth.toml", "-q").code == 0
     make_halves(tmp_path)
     write_scene(tmp_path, "fit", "masks", 4, [1, 0, 0, 0])
-    done = call(tmp_path, "invert", "spin", "a.csv", "--scenario", "fit.toml", "--axis", "z", "--period", "120", *KNOWN, "-o", "spin")
+    done = call(tmp_path, "invert", "spin", "a.csv", "--scenario", "fit.toml", "--axis", "x", "--period", "40.3", *KNOWN, "-o", "spin")
     assert done.code == 0, done.err
-    start = json.loads((tmp_path / "spin/verdict.json").read_text())
     done = track(tmp_path, "b.csv", "--json", start="spin")
     assert done.code == 0, done.err
     verdict = json.loads(done.out)
     assert verdict["lost_utc"] is None
-    if start["verdict"] == "determined":
-        assert verdict["modes"][0]["rate_deg_s"][2] == pytest.approx(3, abs=0.05)
+    best = verdict["modes"][0]
+    assert abs(best["rate_deg_s"][0]) == pytest.approx(9, abs=0.1)  # 1 %: what a body with four alike sides may leave
 
 
 def test_in_two_goes_it_is_the_same(made):
@@ -210,14 +210,14 @@ def test_no_light_at_all_is_told(made):
     ("b.csv", 3, 'modes without the column "weight"'),
     ("bad.json", 3, "no state of a tracking"),
     ("unnoted.ecsv", 3, "the header does not say epoch_utc"),
-    ("broken.ecsv", 3, "broken.ecsv:"),
+    ("broken.ecsv", 3, 'weight = "much"'),
 ])
 def test_starts_that_are_none_are_told(made, start, code, message):
     (made / "bad.json").write_text('{"question": "pose"}\n')
     modes = (made / "pose/modes.ecsv").read_text()
     (made / "unnoted.ecsv").write_text("\n".join(line for line in modes.splitlines() if "epoch_utc" not in line) + "\n")
     lines = modes.splitlines()
-    lines[-1] = "x" + lines[-1]
+    lines[-1] = " ".join([lines[-1].split()[0], "much", *lines[-1].split()[2:]])
     (made / "broken.ecsv").write_text("\n".join(lines) + "\n")
     words = ["--start", start] if start else []
     done = call(made, "invert", "track", "b.csv", "--scenario", "fit.toml", *words)
