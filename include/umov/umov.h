@@ -64,6 +64,7 @@
 #include <umov/inverse/signature.h>
 #include <umov/inverse/spin_search.h>
 #include <umov/inverse/symmetry.h>
+#include <umov/inverse/track.h>
 #include <umov/inverse/unmix.h>
 #include <umov/io/attitude_file.h>
 #include <umov/io/calibration_file.h>
@@ -77,6 +78,7 @@
 #include <umov/io/light_curve_table.h>
 #include <umov/io/measured_file.h>
 #include <umov/io/mesh_file.h>
+#include <umov/io/modes_file.h>
 #include <umov/io/obj.h>
 #include <umov/io/observation.h>
 #include <umov/io/observations_file.h>

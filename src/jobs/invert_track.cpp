@@ -67,11 +67,17 @@ struct Following {
   EndMember fitted; ///< [epoch * bands + band] of the light curve's own bands
 };
 
-void put_light(const TrackStep &step, const ObservedLightCurve &observed, EndMember &out) {
+/// What the heaviest filter makes of an epoch, in the units of what was measured.
+void put_light(const TrackStep &step, const TrackMode &heaviest, const TrackFrame &frame,
+               const ObservedLightCurve &observed, EndMember &out) {
   for (const std::size_t column : observed.column) {
-    out.i.push_back(step.i.empty() ? std::nan("") : step.i[column]);
-    out.q.push_back(step.i.empty() ? std::nan("") : step.q[column]);
-    out.u.push_back(step.i.empty() ? std::nan("") : step.u[column]);
+    const double gain = heaviest.nuisances[frame.errors.has_clouds ? 0 : column];
+    const auto put = [&](const std::vector<double> &light, std::vector<double> &to) {
+      to.push_back(light.empty() ? std::nan("") : gain * light[column]);
+    };
+    put(step.i, out.i);
+    put(step.q, out.q);
+    put(step.u, out.u);
   }
 }
 
@@ -91,7 +97,7 @@ Result<Following> follow(AttitudeBank &bank, const ObservedLightCurve &observed,
     for (std::size_t k = 0; k < now.modes.size(); ++k)
       out.history.rows.push_back({utc, now.modes[k], step.chi2[k], step.measurements});
     tell(step, to_iso(time), out.history);
-    put_light(step, observed, out.fitted);
+    put_light(step, now.modes.front(), frame, observed, out.fitted);
     out.history.poses_lit += step.poses_lit;
     ++out.history.epochs;
     missed.push_back(to_iso(time));
@@ -103,6 +109,10 @@ Result<Following> follow(AttitudeBank &bank, const ObservedLightCurve &observed,
     out.history.lost_utc = bank.loss() == TrackLoss::Misfit ? missed.front() : to_iso(time);
     break;
   }
+  const double scale = scale_of(now.modes.front(), frame);
+  for (auto *light : {&out.fitted.i, &out.fitted.q, &out.fitted.u})
+    for (double &value : *light)
+      value /= scale;
   return out;
 }
 
@@ -130,12 +140,13 @@ Table last_modes(const PoseAnswer &answer, const TrackStart &now) {
 Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &request,
                                const TrackRequest &track, const JobOptions &options,
                                const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(start, open_track_start(track.start));
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics, monitor.cancel));
   take_apart(ready, request, options, diagnostics, monitor.cancel);
   TrackFrame frame{{}, parts_of(ready), request.errors, ready.observed.curve.is_absolute};
   for (const Band &band : scenario.bands)
     frame.bands.push_back(band.name);
-  UMOV_ASSIGN(now, read_track_start(track.start, frame, track.rate_sd * rad_per_deg));
+  UMOV_ASSIGN(now, read_track_start(start, frame, track.rate_sd * rad_per_deg));
   frame.errors.median_i = now.median_i;
   frame.errors.floor = now.floor = std::max(request.errors.floor, now.floor);
   const auto &geometry = ready.observed.geometry;

@@ -3,12 +3,15 @@
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <umov/io/modes_file.h>
+#include <utility>
 
 namespace umov::jobs {
 namespace {
@@ -165,8 +168,7 @@ Result<TrackStart> start_of_state(const std::string &text, const std::string &pa
 
 } // namespace
 
-Result<TrackStart> read_track_start(const std::string &path, const TrackFrame &frame,
-                                    double rate_sd) {
+Result<TrackStartFile> open_track_start(const std::string &path) {
   namespace fs = std::filesystem;
   if (path.empty())
     return fail(ErrorCode::Usage,
@@ -185,16 +187,20 @@ Result<TrackStart> read_track_start(const std::string &path, const TrackFrame &f
           {path});
   }
   UMOV_ASSIGN(text, read_file(file));
-  const std::string name = file.string();
-  const bool is_state = !text.empty() && text.front() == '{';
-  UMOV_ASSIGN(out, is_state ? start_of_state(text, name, frame)
-                            : start_of_modes(text, name, frame, rate_sd));
+  return TrackStartFile{file.string(), std::move(text)};
+}
+
+Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
+                                    double rate_sd) {
+  const bool is_state = file.text.starts_with('{');
+  UMOV_ASSIGN(out, is_state ? start_of_state(file.text, file.path, frame)
+                            : start_of_modes(file.text, file.path, frame, rate_sd));
   if (out.searched == name_of(Verdict::NoFit))
     return fail(ErrorCode::BadInput,
                 "the search that it began with explains nothing (no_fit): there is no attitude to "
                 "be followed",
-                {name});
-  out.inputs.push_back({name, sha256_hex(text)});
+                {file.path});
+  out.inputs.push_back({file.path, sha256_hex(file.text)});
   return out;
 }
 

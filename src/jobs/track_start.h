@@ -1,7 +1,6 @@
 #pragma once
 // Private: what a tracking begins with, and what it leaves for the next one.
 
-#include <filesystem>
 #include <umov/core/quantity.h>
 #include <umov/inverse/track.h>
 #include <umov/jobs/invert.h>
@@ -29,11 +28,17 @@ struct TrackFrame {
   bool is_absolute = false; ///< of the light that is to be followed
 };
 
-/// Reads the folder of an answer of umov invert pose, spin or track, its modes.ecsv or its
-/// state.json. Attitudes of `pose` hold until its data end, and their rate is 0 to `rate_sd`
-/// [rad/s]; those of `spin` have turned until then. Usage where nothing is named, BadInput for what
-/// is no such answer, one of other bands or materials, and one without an attitude to be followed.
-Result<TrackStart> read_track_start(const std::string &path, const TrackFrame &frame,
+/// A start as it was read.
+struct TrackStartFile {
+  std::string path, text;
+};
+/// The state.json or modes.ecsv of an answer's folder, or such a file. Usage where nothing is
+/// named, BadInput for a folder that has neither; before any work is done.
+Result<TrackStartFile> open_track_start(const std::string &path);
+/// What it says. Attitudes of `pose` hold until its data end, and their rate is 0 to `rate_sd`
+/// [rad/s]; those of `spin` have turned until then. BadInput for what is no such answer, one of
+/// other bands or materials, and one without an attitude to be followed.
+Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
                                     double rate_sd);
 /// state.json: all digits, so that the next tracking goes on as if there had been no end.
 std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLoss loss);
