@@ -87,10 +87,7 @@ AttitudeBank::AttitudeBank(std::vector<TrackMode> modes, PoseLighting light,
                            std::vector<std::string> bands, std::vector<PartKind> parts,
                            const TrackOptions &options)
     : modes_(std::move(modes)), light_(std::move(light)), bands_(std::move(bands)),
-      parts_(std::move(parts)), options_(options) {
-  TrackStep none;
-  settle(none);
-}
+      parts_(std::move(parts)), options_(options) {}
 
 Result<TrackStep> AttitudeBank::step(const ObservedCurve &epoch, double seconds) {
   for (TrackMode &mode : modes_)

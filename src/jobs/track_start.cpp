@@ -1,12 +1,13 @@
 #include "jobs/track_start.h"
 
-#include "jobs/invert_tables.h"
+#include "jobs/track_tables.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
@@ -85,6 +86,12 @@ Result<TrackStart> start_of_modes(const std::string &text, const std::string &pa
       mode = turned_on(mode, seconds_between(until, epoch), 0);
     out.modes.push_back(std::move(mode));
   }
+  std::ranges::stable_sort(out.modes, std::greater<>(), &TrackMode::log_weight);
+  double sum = 0;
+  for (const TrackMode &mode : out.modes)
+    sum += weight_of(mode);
+  for (TrackMode &mode : out.modes)
+    mode.log_weight -= std::log(sum);
   return out;
 }
 

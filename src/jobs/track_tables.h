@@ -23,6 +23,7 @@ struct TrackHistory {
   std::string lost_utc;               ///< of the first epoch that was not explained; "": none was
   TrackLoss loss = TrackLoss::None;
   std::size_t poses_lit = 0;
+  std::vector<double> step_ms; ///< of the clock, each epoch: told, and no part of the answer
 };
 
 /// Share of the probability, and gain of all bands in the mean.

@@ -61,7 +61,8 @@ struct TrackStep {
 /// Filters with weights.
 class AttitudeBank {
 public:
-  /// `light` gives those bands; an epoch's samples name them by their place.
+  /// `modes`: heaviest first, their weights add up to one; `light` gives those bands, which an
+  /// epoch's samples name by their place.
   AttitudeBank(std::vector<TrackMode> modes, PoseLighting light, std::vector<std::string> bands,
                std::vector<PartKind> parts, const TrackOptions &options);
   /// Goes on by `seconds` to `epoch`, a curve of one epoch in the bands of this bank; without a
