@@ -63,18 +63,37 @@ void forget_gain(Belief &belief, double scale) {
   belief.covariance(at, at) = open * open * scale * scale;
 }
 
-/// Bhattacharyya's distance of two filters.
-double distance(const TrackMode &a, const TrackMode &b, const Belief &one, const Belief &other,
-                VectorXd &apart) {
-  apart = other.mean - one.mean;
-  apart.head<3>() = inverse::eigen_of(turn_between(a.turning.attitude, b.turning.attitude));
-  const MatrixXd middle = inverse::lower_root((one.covariance + other.covariance) / 2);
-  return inverse::square_in(middle, apart) / 8 +
-         (inverse::log_determinant(middle) -
-          (inverse::log_determinant(inverse::lower_root(one.covariance)) +
-           inverse::log_determinant(inverse::lower_root(other.covariance))) /
-              2) /
-             2;
+/// A filter as its neighbours are asked for.
+struct Neighbour {
+  Belief belief;
+  double log_determinant = 0;
+};
+Neighbour neighbour_of(const TrackMode &mode) {
+  Neighbour out{inverse::belief_of(mode), 0};
+  out.log_determinant = inverse::log_determinant(inverse::lower_root(out.belief.covariance));
+  return out;
+}
+
+/// From one to the other: differences of their means.
+VectorXd between(const Neighbour &one, const Neighbour &other) {
+  VectorXd out = other.belief.mean - one.belief.mean;
+  out.head<3>() = inverse::eigen_of(turn_between(one.belief.attitude, other.belief.attitude));
+  return out;
+}
+
+/// They are one: Bhattacharyya's distance is that of two of the same covariance that lie a standard
+/// deviation apart.
+bool is_one(const Neighbour &one, const Neighbour &other, const VectorXd &apart) {
+  constexpr double least = 0.125;
+  const MatrixXd middle = (one.belief.covariance + other.belief.covariance) / 2;
+  // Their turns alone are farther apart than that, as of most: spares the rest.
+  if (apart.head<3>().squaredNorm() > middle.diagonal().head<3>().sum())
+    return false;
+  const MatrixXd root = inverse::lower_root(middle);
+  return inverse::square_in(root, apart) / 8 +
+             (inverse::log_determinant(root) - (one.log_determinant + other.log_determinant) / 2) /
+                 2 <
+         least;
 }
 
 double log_sum(double a, double b) {
@@ -217,31 +236,30 @@ void AttitudeBank::drop_light(TrackStep &out) {
 }
 
 void AttitudeBank::join_near(TrackStep &out) {
-  constexpr double one = 0.125; // a standard deviation apart, if both are as wide
-  std::vector<Belief> beliefs;
+  std::vector<Neighbour> all;
   for (const TrackMode &mode : modes_)
-    beliefs.push_back(inverse::belief_of(mode));
+    all.push_back(neighbour_of(mode));
   for (std::size_t a = 0; a < modes_.size(); ++a)
     for (std::size_t b = a + 1; b < modes_.size();) {
-      VectorXd apart;
-      if (!(distance(modes_[a], modes_[b], beliefs[a], beliefs[b], apart) < one)) {
+      const VectorXd apart = between(all[a], all[b]);
+      if (!is_one(all[a], all[b], apart)) {
         ++b;
         continue;
       }
       // Mean and covariance of both together.
       const double both = log_sum(modes_[a].log_weight, modes_[b].log_weight),
                    part = std::exp(modes_[b].log_weight - both);
-      Belief joined = beliefs[a];
+      Belief joined = all[a].belief;
       joined.mean += part * apart;
-      joined.covariance = (1 - part) * beliefs[a].covariance + part * beliefs[b].covariance +
+      joined.covariance = (1 - part) * joined.covariance + part * all[b].belief.covariance +
                           part * (1 - part) * apart * apart.transpose();
       out.joined.emplace_back(modes_[b].number, modes_[a].number);
       inverse::put(joined, modes_[a]);
       modes_[a].log_weight = both;
-      beliefs[a] = inverse::belief_of(modes_[a]);
+      all[a] = neighbour_of(modes_[a]);
       const auto at = static_cast<std::ptrdiff_t>(b);
       modes_.erase(modes_.begin() + at);
-      beliefs.erase(beliefs.begin() + at);
+      all.erase(all.begin() + at);
       out.chi2.erase(out.chi2.begin() + at);
     }
 }

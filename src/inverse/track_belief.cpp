@@ -31,17 +31,17 @@ void put(const Belief &belief, TrackMode &mode) {
 
 MatrixXd lower_root(const MatrixXd &m) {
   const Index n = m.rows();
-  constexpr double rounding = 1e-13; // of a variance: less of it is known exactly
-  MatrixXd out = MatrixXd::Zero(n, n);
+  constexpr double rounding = 1e-13;     // of a variance: less of it is known exactly
+  MatrixXd upper = MatrixXd::Zero(n, n); // transposed, so that products run along memory
   for (Index c = 0; c < n; ++c) {
-    const double pivot = m(c, c) - out.row(c).head(c).squaredNorm();
+    const double pivot = m(c, c) - upper.col(c).head(c).squaredNorm();
     if (!(pivot > rounding * m(c, c)))
       continue;
-    out(c, c) = std::sqrt(pivot);
+    const double root = upper(c, c) = std::sqrt(pivot);
     for (Index r = c + 1; r < n; ++r)
-      out(r, c) = (m(r, c) - out.row(r).head(c).dot(out.row(c).head(c))) / out(c, c);
+      upper(c, r) = (m(r, c) - upper.col(r).head(c).dot(upper.col(c).head(c))) / root;
   }
-  return out;
+  return upper.transpose();
 }
 
 MatrixXd over_root(const MatrixXd &d, const MatrixXd &root) {
