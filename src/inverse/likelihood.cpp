@@ -260,7 +260,8 @@ Comparison CurveLikelihood::compare_at(const ModelLight &model,
   out.scale = sum / static_cast<double>(gains.size());
   const Weighed data = weigh_at(model, out.scale);
   out.chi2 = fill(model, known, data, out.residuals);
-  out.minus_2_log = trust(out.residuals).minus_2_log + data.grown;
+  out.minus_2_log =
+      data.grown + (errors_.outlier_share > 0 ? trust(out.residuals).minus_2_log : out.chi2);
   return out;
 }
 

@@ -91,12 +91,11 @@ void FilterUpdate::take(std::size_t which, const ModelLight &light) {
   light_ = {of.mix().i(), of.mix().q(), of.mix().u()};
 }
 
-FilterUpdate::Line FilterUpdate::line() const {
+FilterUpdate::Line FilterUpdate::line(Index columns) const {
   const auto trust = likelihood_.trust({middle_.data(), static_cast<std::size_t>(middle_.size())});
   const Eigen::Map<const Eigen::ArrayXd> root(trust.root.data(), middle_.size());
-  Line out{middle_, MatrixXd(middle_.size(), root_.cols()), MatrixXd(middle_.size(), root_.cols()),
-           0};
-  for (Index c = 0; c < root_.cols(); ++c) {
+  Line out{middle_, MatrixXd(middle_.size(), columns), MatrixXd(middle_.size(), columns), 0};
+  for (Index c = 0; c < columns; ++c) {
     const VectorXd &up = up_[static_cast<std::size_t>(c)],
                    &down = down_[static_cast<std::size_t>(c)];
     out.by_root.col(c) = (root * (up - down).array()) / (2 * reach_[c]);
@@ -109,7 +108,7 @@ FilterUpdate::Line FilterUpdate::line() const {
 }
 
 FilterUpdate::Bend FilterUpdate::bend() const {
-  const Line now = line();
+  const Line now = line(turns);
   Bend out;
   for (Index c = 0; c < turns; ++c)
     if (const double square = now.bends.col(c).squaredNorm() / 2; square > out.square)
@@ -124,7 +123,7 @@ double FilterUpdate::cost() const {
 
 void FilterUpdate::step() {
   constexpr int most = 12;            // whole steps
-  constexpr double settled = 1e-2;    // square of a step in standard deviations
+  constexpr double settled = 0.04;    // square of a step in standard deviations
   constexpr double first = 4, by = 8; // what a power lets in of what is not known yet
   const bool was_whole = power_ >= 1;
   if (const double cost_now = cost(); was_whole && !(cost_now < least_)) {
@@ -139,7 +138,7 @@ void FilterUpdate::step() {
     least_ = cost_now;
     best_ = now_;
   }
-  const Line now = line();
+  const Line now = line(root_.cols());
   const MatrixXd slopes = over_root(now.by_root, root_);
   const MatrixXd cross = algebra::product(slopes, before_.covariance);
   const MatrixXd spread_of = algebra::product(cross, slopes.transpose());

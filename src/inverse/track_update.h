@@ -55,7 +55,7 @@ private:
     Eigen::MatrixXd bends;   ///< their second derivatives, one standard deviation a unit
     double more = 0;         ///< in -2 ln likelihood beside the squares
   };
-  [[nodiscard]] Line line() const;
+  [[nodiscard]] Line line(Eigen::Index columns) const; ///< the first ones of the root
   [[nodiscard]] double cost() const;
 
   Belief before_, now_; ///< now: about which the line is drawn
