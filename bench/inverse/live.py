@@ -69,10 +69,10 @@ def live(o, work, truth):
     off = min(blind.apart(best["q"], twin) for twin in blind.twins(truth, verdict["symmetries"]))
     print(f"{o.object}: start {start['verdict']} of {len(start['modes'])} modes; {verdict['verdict']}, {len(verdict['modes'])} modes, "
           f"{off:.2f} deg off ({best['sd_deg']:.2f} told), {verdict['epochs']} epochs; {told}", flush=True)
-    is_cut = False
+    in_two = "lost in the first"
     if follow(o, work, "rest_a.csv", "start", "cut_a")[1]["lost_utc"] is None:
         follow(o, work, "rest_b.csv", "cut_a", "cut_b")
-        is_cut = same(work / "cut_b", work / "whole")
+        in_two = "the same bytes" if same(work / "cut_b", work / "whole") else "OTHER BYTES"
     command = [o.umov, "invert", "track", work / "rest.csv", "--scenario", work / "fit.toml", "--start", work / "start", "-o",
                work / "killed", "--threads", "1", "-q", *o.follow]
     process = subprocess.Popen(list(map(str, command)))
@@ -81,7 +81,7 @@ def live(o, work, truth):
     process.kill()
     process.wait()
     follow(o, work, "rest.csv", "start", "killed")
-    print(f"{o.object}: in two goes {'the same bytes' if is_cut else 'OTHER BYTES, or lost'}; "
+    print(f"{o.object}: in two goes {in_two}; "
           f"{'killed' if is_killed else 'NOT KILLED IN TIME'} and begun anew "
           f"{'the same bytes' if same(work / 'killed', work / 'whole') else 'OTHER BYTES'}", flush=True)
 
@@ -131,7 +131,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--object", choices=blind.MESH, default="hst")
     parser.add_argument("--trials", type=int, default=3, help="objects that are followed")
-    parser.add_argument("--curves", type=int, default=3)
+    parser.add_argument("--curves", type=int, default=3, help="of cubesats, of the job that is killed; 0: none")
     parser.add_argument("--snr", type=float, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
@@ -149,7 +149,8 @@ def main():
     for path in curves:
         curve(o, work, rng)
         path.write_bytes((work / "obs.csv").read_bytes())
-    killed(o, work, curves)
+    if curves:
+        killed(o, work, curves)
 
 
 if __name__ == "__main__":
