@@ -42,7 +42,7 @@ TrackMode turned_on(const TrackMode &mode, double seconds, double rate_noise);
 
 /// Why a bank no longer knows.
 enum class TrackLoss {
-  None,
+  None,   ///< it knows
   Misfit, ///< no filter explains three measured epochs that follow each other
   Open    ///< the attitude is known to less than pi/sqrt(3) rad about some axis: it may be any
 };
@@ -70,6 +70,7 @@ public:
   Result<TrackStep> step(const ObservedCurve &epoch, double seconds);
   /// Heaviest first.
   [[nodiscard]] const std::vector<TrackMode> &modes() const { return modes_; }
+  /// Why it no longer knows; what it makes of later epochs is nothing.
   [[nodiscard]] TrackLoss loss() const { return loss_; }
   /// Measured epochs since the last that was explained: three are a loss.
   [[nodiscard]] std::size_t misses() const { return misses_; }
