@@ -63,7 +63,7 @@ def live(o, work, truth):
         print(f"{o.object}: the first half explains nothing", flush=True)
         return
     began = time.perf_counter()
-    told, verdict = follow(o, work, "rest.csv", "start", "whole")
+    told, verdict = follow(o, work, "rest.csv", "start", "held")
     seconds = time.perf_counter() - began
     best = verdict["modes"][0]
     off = min(blind.apart(best["q"], twin) for twin in blind.twins(truth, verdict["symmetries"]))
@@ -72,7 +72,7 @@ def live(o, work, truth):
     in_two = "lost in the first"
     if follow(o, work, "rest_a.csv", "start", "cut_a")[1]["lost_utc"] is None:
         follow(o, work, "rest_b.csv", "cut_a", "cut_b")
-        in_two = "the same bytes" if same(work / "cut_b", work / "whole") else "OTHER BYTES"
+        in_two = "the same bytes" if same(work / "cut_b", work / "held") else "OTHER BYTES"
     command = [o.umov, "invert", "track", work / "rest.csv", "--scenario", work / "fit.toml", "--start", work / "start", "-o",
                work / "killed", "--threads", "1", "-q", *o.follow]
     process = subprocess.Popen(list(map(str, command)))
