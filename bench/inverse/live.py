@@ -83,7 +83,7 @@ def live(o, work, truth):
     follow(o, work, "rest.csv", "start", "killed")
     print(f"{o.object}: in two goes {in_two}; "
           f"{'killed' if is_killed else 'NOT KILLED IN TIME'} and begun anew "
-          f"{'the same bytes' if same(work / 'killed', work / 'whole') else 'OTHER BYTES'}", flush=True)
+          f"{'the same bytes' if same(work / 'killed', work / 'held') else 'OTHER BYTES'}", flush=True)
 
 
 def merged(o, job, work):

@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Turns by the rate, by sigma points at sqrt(3) standard deviations with their second differences
-/// (Nørgaard, Poulsen & Ravn 2000, Automatica 36, 1627): no weight of theirs is negative, however
+/// (Norgaard, Poulsen & Ravn 2000, Automatica 36, 1627): no weight of theirs is negative, however
 /// many unknowns there are.
 void turn_on(Belief &belief, double seconds) {
   const MatrixXd root = lower_root(belief.covariance);

@@ -5,7 +5,7 @@
 
 namespace umov::inverse {
 
-/// Iterated posterior linearisation (García-Fernández et al. 2015, IEEE Trans. Signal Process. 63,
+/// Iterated posterior linearisation (Garcia-Fernandez et al. 2015, IEEE Trans. Signal Process. 63,
 /// 5561): residuals as a straight line through sigma points about the belief that the step before
 /// left, with what bends as an error of its own; each step begins at the belief before the epoch.
 /// The data come in by powers, so that no step rests on a line through points that lie wider than
