@@ -122,9 +122,11 @@ def curve(o, work, rng, step=12):
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
         blind.run(o.umov, "mesh", "make", *words, "-o", mesh, "-q")
-    truth = blind.random_attitude(rng)
-    blind.make_curve(o, work, meshes, 0, blind.inertial(truth), step, rng)
-    return truth
+    while True:
+        truth = blind.random_attitude(rng)
+        blind.make_curve(o, work, meshes, 0, blind.inertial(truth), step, rng)
+        if epochs_of(work / "obs.csv")[1]:  # else dark sides alone are seen
+            return truth
 
 
 def main():
