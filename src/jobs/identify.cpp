@@ -205,8 +205,13 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
   const SearchedLight &light = *made;
   UMOV_ASSIGN(file, SignatureFile::open(library.file(k)));
   const SignatureText &text = file.view().text;
-  if (text.job !=
-      signature_job(scenario, light.light.inputs(), file.view().signature.cells, text.device))
+  const auto is_made_from = [&](const Scenario &one) {
+    return text.job ==
+           signature_job(one, light.light.inputs(), file.view().signature.cells, text.device);
+  };
+  Scenario direct = scenario; // the library's light, where that between surfaces is the fit's alone
+  direct.light.bounces = 1;
+  if (!is_made_from(scenario) && !is_made_from(direct))
     diagnostics_.warn("is not what its signature was made from, or another umov made that; its own "
                       "light is taken as it is now",
                       {named->second});

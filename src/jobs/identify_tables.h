@@ -13,7 +13,7 @@ struct IdentityWords {
   const IdentityAnswer *answer = nullptr;
   Verdict verdict = Verdict::Undetermined;
   std::vector<std::string> notes;
-  /// What the own light of the best leaves out, if it was asked.
+  /// `share_between` of the best in its own light, if it was asked, and whether its fit had that.
   std::optional<double> light_between = {};
   bool is_between_fitted = false;
 };

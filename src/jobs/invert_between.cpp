@@ -79,7 +79,7 @@ void doubt_direct_light(double share, double floor, Verdict &verdict,
   notes.push_back(fmt::format(
       "light from surface to surface, which this fit leaves out, would be {:.2g} of I in the best "
       "attitude (in the median): more than --floor {:.2g}, so the set may lie beside the truth; "
-      "--set render.bounces=4 has it in the fit",
+      "with render.bounces = 4 in the object's scenario it is in the fit",
       share, floor));
   if (share > much * allowed && verdict == Verdict::Determined)
     verdict = Verdict::Undetermined;

@@ -24,7 +24,7 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
 namespace {
 
 /// Light between surfaces for a table: none of a body that is convex.
-Result<std::optional<LightBetween>>
+Result<std::optional<FittedBetween>>
 prepare_between(const Scenario &scenario, const InvertRequest &request, const SearchedLight &direct,
                 const JobOptions &options, const std::atomic<bool> *cancel) {
   const LightModel &model = direct.light.model();
@@ -34,7 +34,7 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
   with.light.max_points = most_points::of_a_node;
   SignatureRequest rough;
   rough.method = request.method == LightMethod::Rays ? LightMethod::Rays : LightMethod::Masks;
-  rough.accuracy = 0.05; // a pose has the mean of sixteen nodes
+  rough.accuracy = 0.05;
   rough.between = scenario.light.between;
   if (rough.between == BetweenMethod::Auto)
     rough.between = BetweenMethod::Chains;
@@ -44,12 +44,10 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
   UMOV_ASSIGN(whole, PoseLight::make(with, rough, by_processor, twice, cancel));
   if (rough.method == LightMethod::Masks && model.facts().method != LightMethod::Rays)
     whole.model().take_masks_of(direct.masks ? direct.masks->model() : model);
-  const bool is_reciprocal = model.joints().empty();
   const double sun_radius_rad = whole.sun_radius_rad();
   constexpr std::size_t fine = 24, coarse = 8; // 7.5 deg and 22.5 deg
-  return LightBetween{std::move(whole),
-                      std::make_shared<BetweenTable>(fine, sun_radius_rad, is_reciprocal),
-                      std::make_shared<BetweenTable>(coarse, sun_radius_rad, is_reciprocal)};
+  return FittedBetween{std::move(whole), std::make_shared<BetweenTable>(fine, sun_radius_rad),
+                       std::make_shared<BetweenTable>(coarse, sun_radius_rad)};
 }
 
 } // namespace
@@ -123,62 +121,18 @@ PoseLighting lighting_by_part(const LightByPart &parts, bool is_quick, unsigned 
   };
 }
 
-/// What nobody has asked the tables for before, a minute's work now and then: told as it goes.
-PoseLighting lighting_between(const PoseLight &whole, unsigned threads, const Monitor &monitor) {
-  return [&whole, threads, &monitor](std::span<const Pose> poses, StokesTable &out) {
-    constexpr std::size_t block = 1u << 10;
-    const PoseLighting light = lighting_of(whole, threads, monitor);
-    StokesTable some;
-    out = {};
-    for (std::size_t begin = 0; begin < poses.size(); begin += block) {
-      monitor.advance("light between surfaces", begin, poses.size());
-      if (!light(poses.subspan(begin, std::min(block, poses.size() - begin)), some))
-        return false;
-      out.bands = some.bands;
-      out.indirect.insert(out.indirect.end(), some.indirect.begin(), some.indirect.end());
-    }
-    return true;
-  };
+/// What nobody has asked a table for before, a minute's work now and then: told as it goes.
+BetweenTable::Lighting lighting_between(const PoseLight &whole, unsigned threads,
+                                        const Monitor &monitor) {
+  return {lighting_of(whole, 1, monitor),
+          [&monitor](std::size_t done, std::size_t total) {
+            monitor.advance("light between surfaces", done, total);
+          },
+          threads};
 }
 
-PoseLighting with_between(PoseLighting direct, const LightBetween &between,
-                          const std::shared_ptr<BetweenTable> &table, unsigned threads,
-                          const Monitor &monitor) {
-  return BetweenTable::lighting(std::move(direct),
-                                lighting_between(between.whole, threads, monitor), table, threads);
-}
-
-} // namespace
-
-PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,
-                               const Monitor &monitor) {
-  if (!ready.parts)
-    return whole_lighting(ready, threads, monitor);
-  PoseLighting direct = lighting_by_part(*ready.parts, false, threads, monitor);
-  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->fine,
-                                      threads, monitor)
-                       : direct;
-}
-
-PoseLighting whole_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
-  PoseLighting direct = lighting_of(ready.light, threads, monitor);
-  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->fine,
-                                      threads, monitor)
-                       : direct;
-}
-
-PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
-  if (!ready.parts)
-    return quick_lighting(ready, threads, monitor);
-  PoseLighting direct = lighting_by_part(*ready.parts, true, threads, monitor);
-  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->coarse,
-                                      threads, monitor)
-                       : direct;
-}
-
-namespace {
-
-PoseLighting direct_by_masks(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+/// Masks as they are, without half-widths.
+PoseLighting by_masks(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
   if (!ready.masks)
     return lighting_of(ready.light, threads, monitor);
   return [masks = lighting_of(*ready.masks, threads, monitor)](std::span<const Pose> poses,
@@ -189,13 +143,50 @@ PoseLighting direct_by_masks(const SearchedLight &ready, unsigned threads, const
   };
 }
 
+/// What goes between surfaces beside it, if the scenario asks for that.
+PoseLighting with_between(const SearchedLight &ready, PoseLighting direct,
+                          std::shared_ptr<BetweenTable> FittedBetween::*table, unsigned threads,
+                          const Monitor &monitor) {
+  if (!ready.between)
+    return direct;
+  return BetweenTable::beside(std::move(direct),
+                              lighting_between(ready.between->whole, threads, monitor),
+                              (*ready.between).*table);
+}
+
 } // namespace
 
+PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,
+                               const Monitor &monitor) {
+  return with_between(ready,
+                      ready.parts ? lighting_by_part(*ready.parts, false, threads, monitor)
+                                  : lighting_of(ready.light, threads, monitor),
+                      &FittedBetween::fine, threads, monitor);
+}
+
+PoseLighting whole_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+  return with_between(ready, lighting_of(ready.light, threads, monitor), &FittedBetween::fine,
+                      threads, monitor);
+}
+
+PoseLighting followed_lighting(const SearchedLight &ready, unsigned threads,
+                               const Monitor &monitor) {
+  return with_between(ready,
+                      ready.parts ? lighting_by_part(*ready.parts, true, threads, monitor)
+                                  : by_masks(ready, threads, monitor),
+                      &FittedBetween::fine, threads, monitor);
+}
+
+PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+  return with_between(ready,
+                      ready.parts ? lighting_by_part(*ready.parts, true, threads, monitor)
+                                  : by_masks(ready, threads, monitor),
+                      &FittedBetween::coarse, threads, monitor);
+}
+
 PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
-  PoseLighting direct = direct_by_masks(ready, threads, monitor);
-  return ready.between ? with_between(std::move(direct), *ready.between, ready.between->coarse,
-                                      threads, monitor)
-                       : direct;
+  return with_between(ready, by_masks(ready, threads, monitor), &FittedBetween::coarse, threads,
+                      monitor);
 }
 
 PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor &monitor) {

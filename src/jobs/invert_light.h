@@ -18,7 +18,7 @@ struct WholeLight {
   std::optional<PoseLight> light;
 };
 /// Light between surfaces, where the scenario asks for it (`render.bounces`).
-struct LightBetween {
+struct FittedBetween {
   PoseLight whole;
   /// For the last steps, and for the search.
   std::shared_ptr<BetweenTable> fine, coarse;
@@ -26,8 +26,8 @@ struct LightBetween {
 /// Light of an object as a search wants it.
 struct SearchedLight {
   PoseLight light;
-  std::optional<PoseLight> masks;           ///< for the search, where `light` mends them; else none
-  std::optional<LightBetween> between = {}; ///< beside `light`, which is direct
+  std::optional<PoseLight> masks; ///< for the search, where `light` mends them; else none
+  std::optional<FittedBetween> between = {}; ///< beside `light`, which is direct
   /// The light of `light` by material, where that is not quite known and can be taken apart.
   std::unique_ptr<LightByPart> parts = {};
   /// What `share_between` asks.
@@ -56,7 +56,11 @@ PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,
                                const Monitor &monitor);
 /// The same light without parts.
 PoseLighting whole_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor);
-/// The same for the first fits and for what is far from the peaks: masks as they are.
+/// The same by masks as they are: for what follows an attitude from one observation to the next.
+PoseLighting followed_lighting(const SearchedLight &ready, unsigned threads,
+                               const Monitor &monitor);
+/// The same for the first fits and for what is far from the peaks: masks as they are, and a coarser
+/// table of what goes between surfaces.
 PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor);
 /// Those parts; none where the materials are known.
 std::vector<PartKind> parts_of(const SearchedLight &ready);

@@ -165,7 +165,7 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
                 {request.observations.front()});
   ObservedLightCurve observed = part_of(ready.observed, before, geometry.size() - before);
   const bool is_quick = request.method == LightMethod::Masks;
-  const auto light = is_quick ? first_lighting(ready, options.threads, monitor)
+  const auto light = is_quick ? followed_lighting(ready, options.threads, monitor)
                               : searched_lighting(ready, options.threads, monitor);
   AttitudeBank bank(now.modes, light, frame.bands, frame.parts,
                     {frame.errors, track.rate_noise * rad_per_deg, options.threads});
@@ -175,8 +175,8 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
   observed = part_of(observed, 0, found.history.epochs);
   keep_masks(ready);
   const PoseAnswer answer = answer_of(now, frame);
-  const auto whole_light = lighting_of(ready.light, options.threads, monitor);
-  const auto symmetries = find_symmetries(whole_light, scenario.seed);
+  const auto direct = lighting_of(ready.light, options.threads, monitor);
+  const auto symmetries = find_symmetries(direct, scenario.seed);
   Judgement judgement =
       judge_track(now, frame, found.history, answer, observed.curve, found.fitted, symmetries);
   UMOV_TRY(judge_direct_light(scenario, request, ready, observed.curve,

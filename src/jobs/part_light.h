@@ -14,7 +14,7 @@ namespace umov::jobs {
 /// roughnesses, and what it scatters beside it. Thread safe.
 class LightByPart {
 public:
-  /// None where an object has no such sums: parts that turn, several bounces, measured or brushed
+  /// None where an object has no such sums: parts that turn, measured or brushed
   /// surfaces. Masks that `elder` has traced are not traced again.
   static std::unique_ptr<LightByPart> make(const LightModel &elder, const MaterialErrors &errors,
                                            const JobOptions &options,

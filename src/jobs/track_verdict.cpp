@@ -118,6 +118,7 @@ std::string track_json(const TrackStart &now, const TrackHistory &history, const
   out["spread_deg"] = judgement.families.spread_deg;
   out["light_between"] =
       judgement.light_between ? ordered_json(*judgement.light_between) : ordered_json();
+  out["light_between_fitted"] = judgement.is_between_fitted;
   out["axis_spread_deg"] = judgement.axis_spread_deg;
   ordered_json modes = ordered_json::array();
   for (std::size_t k = 0; k < answer.modes.size(); ++k) {

@@ -64,13 +64,23 @@ TEST_F(LightBetween, IsWhatTheFormFactorSaysOfAFloorAndAWall) {
   EXPECT_NEAR(*found, wall / (r + wall), 0.15 * wall / (r + wall));
 }
 
-TEST_F(LightBetween, IsNothingOfABallAndNotAskedWhereTheFitHasIt) {
+TEST_F(LightBetween, IsTheSameByTheTableOfAFit) {
+  const ObjText obj = write_obj(floor_and_wall(), "sphere", MtlUse::Named);
+  ASSERT_TRUE(write_file_atomically(folder / "sphere.obj", obj.obj));
+  ASSERT_TRUE(write_file_atomically(folder / "sphere.mtl", obj.mtl));
+  const auto found = share(scenario({"material.white.body.reflectance=0.2", "render.bounces=3"}));
+  const double r = 0.2, wall = r * r * 0.200044; // as above; both directions are nodes of the table
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, wall / (r + wall), 0.15 * wall / (r + wall));
+}
+
+TEST_F(LightBetween, IsNothingOfABall) {
   EXPECT_EQ(share(scenario()), 0.0);
-  EXPECT_EQ(share(scenario({"render.bounces=3"})), std::nullopt);
+  EXPECT_EQ(share(scenario({"render.bounces=3"})), 0.0);
 }
 
 TEST(DoubtDirectLight, TakesAVerdictBackWhereItIsFarMoreThanTheFloor) {
-  const auto judged = [](std::optional<double> share, double floor, Verdict before) {
+  const auto judged = [](double share, double floor, Verdict before) {
     std::vector<std::string> notes;
     doubt_direct_light(share, floor, before, notes);
     return std::pair(before, notes.size());
@@ -81,7 +91,7 @@ TEST(DoubtDirectLight, TakesAVerdictBackWhereItIsFarMoreThanTheFloor) {
   EXPECT_EQ(judged(0.06, 0.02, Determined), std::pair(Undetermined, std::size_t{1}));
   EXPECT_EQ(judged(0.06, 0.02, Ambiguous), std::pair(Ambiguous, std::size_t{1}));
   EXPECT_EQ(judged(0.004, 0, Determined), std::pair(Determined, std::size_t{0}));
-  EXPECT_EQ(judged(std::nullopt, 0.02, Determined), std::pair(Determined, std::size_t{0}));
+  EXPECT_EQ(judged(0, 0.02, Determined), std::pair(Determined, std::size_t{0}));
 }
 
 } // namespace
