@@ -19,6 +19,14 @@ using Eigen::VectorXd;
 using inverse::Belief;
 using inverse::FilterUpdate;
 
+namespace {
+
+/// Of a gain that a start told, in parts of it: no point of a filter, sqrt(3) standard deviations
+/// off, has light below 0.
+constexpr double gain_open = 0.5;
+
+} // namespace
+
 TrackMode track_mode(const Turning &turning, const std::vector<double> &covariance, double scale,
                      bool is_absolute, std::size_t bands, const std::vector<PartKind> &parts,
                      const CurveErrors &errors) {
@@ -34,7 +42,7 @@ TrackMode track_mode(const Turning &turning, const std::vector<double> &covarian
   const auto n = static_cast<Index>(inverse::nuisances_at + out.nuisances.size());
   MatrixXd all = MatrixXd::Identity(n, n); // of parts: in units of their priors
   all.topLeftCorner<6, 6>() = Eigen::Map<const MatrixXd>(covariance.data(), 6, 6);
-  const double common = out.scale * (is_known ? errors.scale_sd : 1),
+  const double common = out.scale * (is_known ? errors.scale_sd : gain_open),
                own = out.scale * std::max(errors.zero_point_sd, 1e-6);
   const auto count = static_cast<Index>(gains);
   auto block = all.block(inverse::nuisances_at, inverse::nuisances_at, count, count);
@@ -55,12 +63,11 @@ struct Learning {
 
 /// The transparency of an epoch in clouds is its own: as open as it began.
 void forget_gain(Belief &belief, double scale) {
-  constexpr double open = 2; // of clear sky
   const Index at = inverse::nuisances_at;
   belief.mean[at] = scale;
   belief.covariance.row(at).setZero();
   belief.covariance.col(at).setZero();
-  belief.covariance(at, at) = open * open * scale * scale;
+  belief.covariance(at, at) = gain_open * gain_open * scale * scale;
 }
 
 /// A filter as its neighbours are asked for.
@@ -109,13 +116,36 @@ AttitudeBank::AttitudeBank(std::vector<TrackMode> modes, PoseLighting light,
       parts_(std::move(parts)), options_(options) {}
 
 Result<TrackStep> AttitudeBank::step(const ObservedCurve &epoch, double seconds) {
+  look_for_width(seconds);
   for (TrackMode &mode : modes_)
     mode = turned_on(mode, seconds, options_.rate_noise);
   TrackStep out;
-  UMOV_TRY(learn(epoch, out));
+  if (loss_ == TrackLoss::None)
+    UMOV_TRY(learn(epoch, out));
   settle(out);
   look_for_loss(out);
   return out;
+}
+
+/// How far attitudes open by an epoch, whatever it will say of them: a filter that is wide then
+/// becomes narrow at the first place that fits. By the rate's and the attitude's own errors, which
+/// are not folded at half a turn as attitudes are.
+void AttitudeBank::look_for_width(double seconds) {
+  constexpr double wide_rad = 15 * pi / 180, light = 0.01;
+  const double open_rad = pi / std::sqrt(3.0); // points of it lie beyond half a turn
+  double wide = 0, open = 0;
+  for (const TrackMode &mode : modes_) {
+    const Belief belief = inverse::belief_of(mode);
+    const auto variances = belief.covariance.diagonal();
+    const double most = std::sqrt(variances.head<3>().maxCoeff()) +
+                        std::sqrt(variances.segment<3>(inverse::rate_at).maxCoeff()) * seconds +
+                        options_.rate_noise * std::sqrt(seconds * seconds * seconds / 3);
+    wide += most > wide_rad ? std::exp(mode.log_weight) : 0;
+    open += most > open_rad ? std::exp(mode.log_weight) : 0;
+  }
+  memory_.is_wide = memory_.is_wide || wide > light;
+  if (loss_ == TrackLoss::None && open > light)
+    loss_ = TrackLoss::Open;
 }
 
 /// All filters side by side, so that the light of all their points comes in one batch.
@@ -128,10 +158,9 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
   for (std::size_t b = 0; b < column.size(); ++b)
     column[b] = b;
   const CurveModel model(epoch, light_, column, parts_);
-  std::size_t next_number = 1;
   std::vector<Learning> all;
   for (TrackMode &mode : modes_) {
-    next_number = std::max(next_number, mode.number + 1);
+    memory_.next_number = std::max(memory_.next_number, mode.number + 1);
     Belief belief = inverse::belief_of(mode);
     if (options_.errors.has_clouds)
       forget_gain(belief, mode.scale);
@@ -161,7 +190,9 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
     for (const std::size_t k : of) {
       const FilterUpdate::Bend bend =
           all[k].is_whole ? FilterUpdate::Bend{} : all[k].update->bend();
-      if (!(bend.square > straight) || all.size() + 2 > most) {
+      const bool is_bent = bend.square > straight, is_full = all.size() + 2 > most;
+      memory_.is_wide = memory_.is_wide || (is_bent && is_full);
+      if (!is_bent || is_full) {
         all[k].is_whole = true;
         all[k].update->step();
         continue;
@@ -173,7 +204,7 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
         Learning part{mode, std::make_unique<FilterUpdate>(parts[p].second, likelihood)};
         part.mode.log_weight += std::log(parts[p].first);
         const bool is_middle = 2 * p + 1 == parts.size();
-        part.mode.number = is_middle ? mode.number : next_number++;
+        part.mode.number = is_middle ? mode.number : memory_.next_number++;
         if (is_middle)
           all[k] = std::move(part);
         else
@@ -199,9 +230,7 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
   return {};
 }
 
-/// Heaviest first, without the hopeless, what became one as one, weights that add up to one.
-void AttitudeBank::settle(TrackStep &out) {
-  out.chi2.resize(modes_.size(), std::nan(""));
+void AttitudeBank::sort_by_weight(TrackStep &out) {
   std::vector<std::size_t> order(modes_.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     order[k] = k;
@@ -215,8 +244,15 @@ void AttitudeBank::settle(TrackStep &out) {
   }
   modes_ = std::move(modes);
   out.chi2 = std::move(chi2);
+}
+
+/// Heaviest first, without the hopeless, what became one as one, weights that add up to one.
+void AttitudeBank::settle(TrackStep &out) {
+  out.chi2.resize(modes_.size(), std::nan(""));
+  sort_by_weight(out);
   drop_light(out);
   join_near(out);
+  sort_by_weight(out); // two that became one may outweigh those before them
   double all = -std::numeric_limits<double>::infinity();
   for (const TrackMode &mode : modes_)
     all = std::isfinite(all) ? log_sum(all, mode.log_weight) : mode.log_weight;
@@ -271,20 +307,10 @@ void AttitudeBank::look_for_loss(const TrackStep &now) {
     const auto count = static_cast<double>(now.measurements);
     const bool is_missed =
         chi2_probability(now.chi2.front(), count) < unlikely && now.chi2.front() > 2 * count;
-    misses_ = is_missed ? misses_ + 1 : 0;
-    if (misses_ >= several)
+    memory_.misses = is_missed ? memory_.misses + 1 : 0;
+    if (memory_.misses >= several)
       loss_ = TrackLoss::Misfit;
   }
-  const double open_rad = pi / std::sqrt(3.0); // points of it lie beyond half a turn
-  constexpr double light = 0.01;
-  double open = 0;
-  for (const TrackMode &mode : modes_) {
-    const Belief belief = inverse::belief_of(mode);
-    const double most = belief.covariance.diagonal().head<3>().maxCoeff();
-    open += most > open_rad * open_rad ? std::exp(mode.log_weight) : 0;
-  }
-  if (loss_ == TrackLoss::None && open > light)
-    loss_ = TrackLoss::Open;
 }
 
 } // namespace umov

@@ -22,7 +22,9 @@ template <class Rows, class Take> void add_attitudes(Table &table, const Rows &r
   std::vector<Quaternion> attitudes;
   for (const auto &row : rows)
     attitudes.push_back(take(row));
-  add_attitude_columns(table, attitudes, "body_from_gcrs at the first epoch, scalar first");
+  add_attitude_columns(
+      table, attitudes,
+      "body_from_gcrs at the first epoch (of a tracking: at the last), scalar first");
 }
 
 template <class Rows> void add_rates(Table &table, const Rows &rows) {

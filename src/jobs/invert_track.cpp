@@ -85,7 +85,6 @@ void put_light(const TrackStep &step, const TrackMode &heaviest, const TrackFram
 Result<Following> follow(AttitudeBank &bank, const ObservedLightCurve &observed,
                          const TrackFrame &frame, TrackStart &now, const Monitor &monitor) {
   Following out;
-  std::vector<std::string> missed; // times that were not explained, the last ones
   for (std::size_t e = 0; e < observed.geometry.size(); ++e) {
     monitor.advance("epochs", e, observed.geometry.size());
     const Epoch<Utc> time = told(observed.geometry[e].time);
@@ -96,7 +95,8 @@ Result<Following> follow(AttitudeBank &bank, const ObservedLightCurve &observed,
     out.history.step_ms.push_back(took.count());
     now.time = time;
     now.modes = bank.modes();
-    now.misses = bank.misses();
+    const bool is_first_miss = now.memory.misses == 0 && bank.memory().misses > 0;
+    now.memory = bank.memory();
     const std::string utc = to_iso_exact(time);
     for (std::size_t k = 0; k < now.modes.size(); ++k)
       out.history.rows.push_back({utc, now.modes[k], step.chi2[k], step.measurements});
@@ -104,13 +104,14 @@ Result<Following> follow(AttitudeBank &bank, const ObservedLightCurve &observed,
     put_light(step, now.modes.front(), frame, observed, out.fitted);
     out.history.poses_lit += step.poses_lit;
     ++out.history.epochs;
-    missed.push_back(to_iso(time));
-    if (bank.misses() == 0 && step.measurements > 0)
-      missed.clear();
+    if (is_first_miss)
+      now.missed_utc = to_iso(time);
+    else if (now.memory.misses == 0)
+      now.missed_utc.clear();
     if (bank.loss() == TrackLoss::None)
       continue;
     out.history.loss = bank.loss();
-    out.history.lost_utc = bank.loss() == TrackLoss::Misfit ? missed.front() : to_iso(time);
+    out.history.lost_utc = bank.loss() == TrackLoss::Misfit ? now.missed_utc : to_iso(time);
     break;
   }
   const double scale = scale_of(now.modes.front(), frame);
@@ -128,14 +129,14 @@ PoseAnswer at_begin(PoseAnswer answer, const ObservedCurve &curve) {
 }
 
 /// modes.ecsv, in the form of umov invert spin, at the last epoch.
-Table last_modes(const PoseAnswer &answer, const TrackStart &now) {
+Table last_modes(const PoseAnswer &answer, const TrackStart &now, Verdict verdict) {
   Table out = modes_table(answer, true);
   const std::string time = to_iso_exact(now.time);
   out.note(epoch_note, time);
   out.note(until_note, time);
   out.note(median_note, fmt::format("{}", now.median_i));
   out.note(floor_note, fmt::format("{}", now.floor));
-  out.note(verdict_note, now.searched);
+  out.note(verdict_note, searched_by(now, verdict));
   return out;
 }
 
@@ -169,7 +170,7 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
                               : searched_lighting(ready, options.threads, monitor);
   AttitudeBank bank(now.modes, light, frame.bands, frame.parts,
                     {frame.errors, track.rate_noise * rad_per_deg, options.threads});
-  bank.set_misses(now.misses);
+  bank.set_memory(now.memory);
   UMOV_ASSIGN(found, follow(bank, observed, frame, now, monitor));
   found.history.before = before;
   observed = part_of(observed, 0, found.history.epochs);
@@ -185,8 +186,8 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
   out.verdict = judgement.verdict;
   out.summary = track_summary(now, found.history, answer, judgement);
   out.json = track_json(now, found.history, answer, judgement, symmetries);
-  out.state = state_json(now, frame, found.history.loss);
-  out.tables = {{"modes", last_modes(answer, now)},
+  out.state = state_json(now, frame, found.history.loss, out.verdict);
+  out.tables = {{"modes", last_modes(answer, now, out.verdict)},
                 {"track", track_table(found.history, frame)},
                 {"fit", fit_table(observed, found.fitted, frame.errors)}};
   out.page = track_page("Followed: " + scenario.title, out.tables[2].table, out.tables[1].table,

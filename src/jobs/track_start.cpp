@@ -124,7 +124,12 @@ bool is_whole(const TrackMode &mode, const TrackFrame &frame) {
   for (const PartKind &part : frame.parts)
     count += (part.sd > 0 ? 1u : 0u) + (part.slope_sd > 0 ? 1u : 0u);
   const auto is_finite = [](double x) { return std::isfinite(x); };
-  return mode.nuisances.size() == count && mode.covariance.size() == (6 + count) * (6 + count) &&
+  const Quaternion &q = mode.turning.attitude;
+  const double length = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  const Vec3<Body> &w = mode.turning.rate_rad_s;
+  return std::abs(length - 1) < 1e-6 && std::isfinite(w.x + w.y + w.z) && mode.scale > 0 &&
+         std::isfinite(mode.scale) && mode.chi2 >= 0 && mode.nuisances.size() == count &&
+         mode.covariance.size() == (6 + count) * (6 + count) &&
          std::ranges::all_of(mode.covariance, is_finite) &&
          std::ranges::all_of(mode.nuisances, is_finite) && std::isfinite(mode.log_weight);
 }
@@ -136,13 +141,16 @@ Result<TrackStart> start_of_state(const std::string &text, const std::string &pa
     return fail(ErrorCode::BadInput,
                 fmt::format("{}; state.json of umov invert track was expected", why), {path});
   };
-  if (!all.is_object() || all.value("question", "") != "track" || !all.contains("modes"))
+  const auto text_of = [&](const char *key) {
+    return all.contains(key) && all[key].is_string() ? all[key].get<std::string>() : "";
+  };
+  if (!all.is_object() || text_of("question") != "track" || !all.contains("modes"))
     return no_state("no state of a tracking");
-  if (all.contains("lost_because") && all["lost_because"].is_string())
+  if (!text_of("lost_because").empty())
     return fail(ErrorCode::BadInput,
                 fmt::format("that tracking was lost at {}: begin anew, with umov invert pose or "
                             "spin of later observations",
-                            all.value("time_utc", "")),
+                            printable(text_of("time_utc"))),
                 {path});
   const ordered_json wanted = frame_json(frame);
   for (const char *key : {"bands", "parts", "clouds"})
@@ -161,13 +169,16 @@ Result<TrackStart> start_of_state(const std::string &text, const std::string &pa
     all.at("median_intensity").get_to(out.median_i);
     all.at("floor").get_to(out.floor);
     all.at("search_verdict").get_to(out.searched);
-    all.at("misses").get_to(out.misses);
+    all.at("misses").get_to(out.memory.misses);
+    all.at("next_number").get_to(out.memory.next_number);
+    all.at("is_wide").get_to(out.memory.is_wide);
+    all.at("missed_utc").get_to(out.missed_utc);
     for (const json &one : all.at("modes"))
       out.modes.push_back(mode_of(one));
   } catch (const json::exception &e) {
     return no_state(e.what());
   }
-  if (out.modes.empty() ||
+  if (out.modes.empty() || !(out.median_i >= 0 && out.floor >= 0) ||
       !std::ranges::all_of(out.modes, [&](const TrackMode &mode) { return is_whole(mode, frame); }))
     return no_state("modes that are not whole");
   return out;
@@ -204,14 +215,21 @@ Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame
                             : start_of_modes(file.text, file.path, frame, rate_sd));
   if (out.searched == name_of(Verdict::NoFit))
     return fail(ErrorCode::BadInput,
-                "the search that it began with explains nothing (no_fit): there is no attitude to "
-                "be followed",
+                "the search or tracking that it began with explains nothing (no_fit): there is no "
+                "attitude to be followed",
                 {file.path});
   out.inputs.push_back({file.path, sha256_hex(file.text)});
   return out;
 }
 
-std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLoss loss) {
+std::string searched_by(const TrackStart &state, Verdict verdict) {
+  if (verdict == Verdict::NoFit)
+    return name_of(verdict);
+  return state.memory.is_wide ? name_of(Verdict::Undetermined) : state.searched;
+}
+
+std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLoss loss,
+                       Verdict verdict) {
   ordered_json out;
   out["program"] = "umov";
   out["question"] = "track";
@@ -219,8 +237,11 @@ std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLo
   out.update(frame_json(frame));
   out["median_intensity"] = state.median_i;
   out["floor"] = state.floor;
-  out["search_verdict"] = state.searched;
-  out["misses"] = state.misses;
+  out["search_verdict"] = searched_by(state, verdict);
+  out["misses"] = state.memory.misses;
+  out["missed_utc"] = state.missed_utc;
+  out["next_number"] = state.memory.next_number;
+  out["is_wide"] = state.memory.is_wide;
   if (loss != TrackLoss::None)
     out["lost_because"] = loss == TrackLoss::Misfit ? "misfit" : "open";
   ordered_json modes = ordered_json::array();

@@ -17,7 +17,8 @@ struct TrackStart {
   double median_i = 0;    ///< that floors are of
   double floor = 0;       ///< that the search rested on
   std::string searched;   ///< verdict of the search that it all began with
-  std::size_t misses = 0; ///< AttitudeBank::misses
+  TrackMemory memory;     ///< of the bank
+  std::string missed_utc; ///< of the first of its misses
   std::vector<InputFile> inputs;
 };
 /// What the filters' unknowns are of.
@@ -40,7 +41,10 @@ Result<TrackStartFile> open_track_start(const std::string &path);
 /// other bands or materials, and one without an attitude to be followed.
 Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
                                     double rate_sd);
+/// What a start says of the search before it, if a tracking with this verdict is one.
+std::string searched_by(const TrackStart &state, Verdict verdict);
 /// state.json: all digits, so that the next tracking goes on as if there had been no end.
-std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLoss loss);
+std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLoss loss,
+                       Verdict verdict);
 
 } // namespace umov::jobs

@@ -26,7 +26,7 @@ Verdict first_verdict(const TrackStart &now, const TrackHistory &history, const 
       (count > 0 && chance_of(answer) < unlikely && answer.chi2 > 2 * count))
     return Verdict::NoFit;
   constexpr double far_deg = 10;
-  if (history.loss == TrackLoss::Open || answer.measurements == 0 ||
+  if (history.loss == TrackLoss::Open || answer.measurements == 0 || now.memory.is_wide ||
       now.searched == name_of(Verdict::Undetermined) || !(families.spread_deg < far_deg))
     return Verdict::Undetermined;
   constexpr double sure = 0.95;
@@ -36,14 +36,20 @@ Verdict first_verdict(const TrackStart &now, const TrackHistory &history, const 
 void note_doubts(const TrackStart &now, const TrackHistory &history, const PoseAnswer &answer,
                  const CurveErrors &errors, Judgement &out) {
   if (history.loss == TrackLoss::Misfit)
-    out.notes.push_back(fmt::format("lost at {}: no filter explains what came from then on; ask "
-                                    "umov invert pose or spin anew with those observations",
-                                    history.lost_utc));
+    out.notes.push_back(
+        fmt::format("lost at {}: the likeliest filter does not explain what came from then on; ask "
+                    "umov invert pose or spin anew with those observations",
+                    history.lost_utc));
   if (history.loss == TrackLoss::Open)
     out.notes.push_back(
         fmt::format("lost at {}: by then the attitude is open all around some axis; "
                     "ask umov invert pose or spin anew from there on",
                     history.lost_utc));
+  if (now.memory.is_wide && history.loss == TrackLoss::None)
+    out.notes.emplace_back(
+        "before some of the data the attitude was open to more than 15 deg about some axis, or the "
+        "light bent more than filters have room for: what they say since then may be far off; ask "
+        "umov invert pose or spin anew with the later observations");
   if (now.searched == name_of(Verdict::Undetermined))
     out.notes.emplace_back("the search that it began with was undetermined, as its own notes say: "
                            "attitudes that its modes leave out are not followed");

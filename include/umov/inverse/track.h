@@ -44,7 +44,16 @@ TrackMode turned_on(const TrackMode &mode, double seconds, double rate_noise);
 enum class TrackLoss {
   None,   ///< it knows
   Misfit, ///< no filter explains three measured epochs that follow each other
-  Open    ///< the attitude is known to less than pi/sqrt(3) rad about some axis: it may be any
+  Open    ///< filters of 1 % and more are open to pi/sqrt(3) rad about some axis: all around
+};
+
+/// What a bank knows beside its modes.
+struct TrackMemory {
+  std::size_t misses = 0;      ///< measured epochs since the last that was explained: 3 are a loss
+  std::size_t next_number = 0; ///< of the filter that comes next; 0: one above those that there are
+  /// Before some data an attitude was open to more than filters can look over (15 deg about some
+  /// axis), or they were more than there is room for: what they say since then may be far off.
+  bool is_wide = false;
 };
 
 /// What a bank made of an epoch.
@@ -72,13 +81,14 @@ public:
   [[nodiscard]] const std::vector<TrackMode> &modes() const { return modes_; }
   /// Why it no longer knows; what it makes of later epochs is nothing.
   [[nodiscard]] TrackLoss loss() const { return loss_; }
-  /// Measured epochs since the last that was explained: three are a loss.
-  [[nodiscard]] std::size_t misses() const { return misses_; }
+  [[nodiscard]] const TrackMemory &memory() const { return memory_; }
   /// Goes on from where a bank of these modes had been.
-  void set_misses(std::size_t misses) { misses_ = misses; }
+  void set_memory(const TrackMemory &memory) { memory_ = memory; }
 
 private:
   Result<void> learn(const ObservedCurve &epoch, TrackStep &out);
+  void look_for_width(double seconds);
+  void sort_by_weight(TrackStep &out);
   void settle(TrackStep &out);
   void drop_light(TrackStep &out);
   void join_near(TrackStep &out);
@@ -89,7 +99,7 @@ private:
   std::vector<std::string> bands_;
   std::vector<PartKind> parts_;
   TrackOptions options_;
-  std::size_t misses_ = 0;
+  TrackMemory memory_;
   TrackLoss loss_ = TrackLoss::None;
 };
 

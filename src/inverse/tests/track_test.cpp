@@ -347,6 +347,33 @@ TEST(AttitudeBank, WithoutLightItOnlyTurnsOn) {
   EXPECT_GT(after.covariance[0], before.covariance[0]);
 }
 
+/// 1 deg and .01 deg/s: 21 deg after 2000 s, 201 deg after 20000 s, which as an attitude is folded
+/// at half a turn and would look known.
+TEST(AttitudeBank, AnAttitudeThatOpensBeforeItsDataIsToldWhateverTheySay) {
+  Pursuit pursuit;
+  pursuit.truth = [](double) { return Turning{attitude_grid(1009)[300], {}}; };
+  pursuit.attitude_sd = 1 * degree;
+  pursuit.rate_sd = 0.01 * degree;
+  const ObservedCurve curve = seen(pursuit, 1);
+  struct Case {
+    double gap_s;
+    bool is_wide;
+    TrackLoss loss;
+  };
+  for (const Case &one : {Case{1000, false, TrackLoss::None},
+                          {2000, true, TrackLoss::None},
+                          {20'000, true, TrackLoss::Open}}) {
+    AttitudeBank bank({guess(pursuit, 1)}, pursuit.light, curve.bands, {}, pursuit.options);
+    ASSERT_TRUE(bank.step(epoch_of(curve, 0), one.gap_s));
+    EXPECT_EQ(bank.memory().is_wide, one.is_wide) << one.gap_s;
+    EXPECT_EQ(bank.loss(), one.loss) << one.gap_s;
+    EXPECT_EQ(bank.modes().front().measurements == 0, one.loss == TrackLoss::Open) << one.gap_s;
+    // Once is enough: what came of a wide filter stays in doubt.
+    ASSERT_TRUE(bank.step(epoch_of(curve, 1), 10));
+    EXPECT_EQ(bank.memory().is_wide, one.is_wide) << one.gap_s;
+  }
+}
+
 TEST(AttitudeBank, AWrongNumberIsNotFollowedWhereSomeMayBeWrong) {
   Pursuit pursuit;
   pursuit.truth = constant_turn;
