@@ -81,7 +81,7 @@ std::vector<std::size_t> BetweenTable::missing(std::span<const Pose> poses) cons
         out.push_back(number);
     });
   std::ranges::sort(out);
-  out.erase(std::ranges::unique(out).begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
