@@ -119,3 +119,8 @@ def test_links_of_the_pages_lead_somewhere():
 def test_the_page_of_keys_is_that_of_the_schema():
     made = subprocess.run(["python3", ROOT / "tools/doc_keys", UMOV], capture_output=True, text=True, check=True).stdout
     assert made == (ROOT / "docs/keys.md").read_text(), "run tools/doc_keys > docs/keys.md"
+
+
+def test_inputs_of_the_fuzz_targets_name_no_folder_of_a_machine():
+    inputs = [path for path in (ROOT / "tests/fuzz/corpus").rglob("*") if path.is_file()]
+    assert len(inputs) > 500 and not [path for path in inputs if str(ROOT).encode() in path.read_bytes()]
