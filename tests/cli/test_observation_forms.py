@@ -31,11 +31,19 @@ def test_a_fits_table_is_the_csv(umov, seen, tmp_path):
     done = umov("invert", "pose", "bare.fits", "--scenario", fit)
     assert done.code == 3 and "COMMENT pol_frame" in done.err
     whole = (tmp_path / "obs.fits").read_bytes()
-    # Within the table's header, without its rows, within a block of them (CFITSIO read on behind its end), and within the first block.
-    for kept in (4000, len(whole) - 2880, len(whole) - 1000, 100):
+    begin = whole.index(b"XTENSION")
+    width, count = (int(whole[whole.index(key, begin) + 10:][:20]) for key in (b"NAXIS1  =", b"NAXIS2  ="))
+    rows_end = whole.index(b"END" + b" " * 77, begin) // 2880 * 2880 + 2880 + width * count
+    # Within the table's header, without its rows, within them (CFITSIO read on behind its end), without the last byte, within the first block.
+    for kept, words in ((begin + 1120, "part 2 of the FITS file has a header without an END"), (begin + 300, "part 2 of the FITS file has a header without an END"),
+                        (rows_end - width * count, f"part 2 of the FITS file tells of {width * count} bytes of data, of which 0 are there"),
+                        (rows_end - 1000, f"of which {width * count - 1000} are there"), (rows_end - 1, f"of which {width * count - 1} are there"),
+                        (100, "shorter than a block of FITS")):
         (tmp_path / "cut.fits").write_bytes(whole[:kept])
         done = umov("invert", "pose", "cut.fits", "--scenario", fit)
-        assert done.code == 3 and "cut.fits" in done.err, (kept, done.err)
+        assert done.code == 3 and "cut.fits: " in done.err and words in done.err, (kept, done.err)
+    (tmp_path / "unfilled.fits").write_bytes(whole[:rows_end])  # by a writer that does not fill the last block
+    assert asked(umov, "unfilled.fits", fit)["modes"] == asked(umov, "obs.fits", fit)["modes"]
 
 
 def test_the_fits_table_of_a_run_is_taken_as_it_is(umov, scene, tmp_path):

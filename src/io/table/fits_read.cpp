@@ -206,8 +206,8 @@ Result<TextTable> FitsReader::read() {
 bool is_fits(std::string_view bytes) { return bytes.starts_with("SIMPLE  ="); }
 
 Result<TextTable> read_fits_table(std::string_view bytes, const std::string &file) {
-  UMOV_ASSIGN(size, fits_size(bytes, file));
-  return FitsReader(bytes.substr(0, size), file).read();
+  UMOV_ASSIGN(table, fits_up_to_table(bytes, file));
+  return FitsReader(table, file).read();
 }
 
 } // namespace umov
