@@ -27,7 +27,7 @@ def refused(umov, tmp_path):
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
         before = sorted(tmp_path.rglob("*"))
-        done = umov(*call, timeout=20)
+        done = umov(*call, timeout=120)  # of a machine that others load
         assert done.code == code, (done.out, done.err)
         assert done.err.count("error:") == 1, done.err
         for word in words:
@@ -88,8 +88,8 @@ def changed(form, edit):
     (changed("csv", lambda text: text.replace("BSTAR", "BSTAR,BSTAR", 1)), ["o.txt:1: BSTAR stands twice among the keywords"]),
     (changed("json", lambda text: text[:100]), ["o.txt:2:", "is no JSON", "Fetch the sets again"]),
     (changed("json", lambda text: re.sub('"BSTAR":[^,]*', '"BSTAR":1e400', text)), ["o.txt", "1e400", "a finite number was expected", "Correct it"]),
-    (changed("xml", lambda text: text[:300]), ["o.txt:12", "is no XML", "fetch the file again"]),
-    (lambda forms: "[" * 10000, ["o.txt:1", "nested deeper", "Fetch the sets again"])])
+    (changed("xml", lambda text: text[:300]), ["o.txt:12: ", "is no XML", "fetch the file again"]),
+    (lambda forms: "[" * 10000, ["o.txt:1: ", "nested deeper", "Fetch the sets again"])])
 def test_broken_omm(refused, forms, make, words):
     refused({"o.txt": make(forms)}, ["orbit", "propagate", "--orbit", "o.txt", *AT], words)
 
@@ -124,7 +124,7 @@ MESH = ("--unit", "m", "--up", "+Z")
     ("a.stl.gz", gzip.compress(b"solid a\nendsolid a\n"), ["a.stl.gz", "gunzip"]),
     ("a.obj.zip", b"PK\x03\x04" + bytes(30), ["a.obj.zip", "ZIP"]),
     ("a.stl", bytes(80) + struct.pack("<I12fH", 1, 0, 0, 1, math.nan, 0, 0, 1, 0, 0, 0, 1, 0, 0), ["a.stl", "triangle 1 of 1", "finite"]),
-    ("a.ply", "ply\nformat ascii 1.0\nelement vertex -3\nproperty float x\n", ["a.ply:3", '"-3"', "a count"])])
+    ("a.ply", "ply\nformat ascii 1.0\nelement vertex -3\nproperty float x\n", ["a.ply:3: ", '"-3"', "a count"])])
 def test_meshes_of_others(refused, name, content, words):
     refused({name: content}, ["mesh", "info", name, *MESH], words)
 
@@ -155,24 +155,24 @@ def test_units_of_indices_have_their_line(refused, text, words):
 
 
 @pytest.mark.parametrize("old, new, words", [
-    ("step_s = 20", "step_s = nan", ["scenario.toml:10:10", "step_s is nan", "finite"]),
-    ("step_s = 20", "step_s = inf", ["scenario.toml:10:10", "step_s is inf", "finite"]),
-    ("step_s = 20", "step_s = 1e-9", ["scenario.toml:9", "the limit is 10000000", "Take a longer step"]),
-    ("seed = 1", "seed = 99999999999999999999", ["scenario.toml:2:28", "smaller number"]),
-    ("seed = 1", "seed = -1", ["scenario.toml:2:1", "seed = -1", "0 or more"]),
-    ("seed = 1", 'seed = 1\ninclude = "../../etc/passwd"', ["scenario.toml:3:1", 'unknown key "include"']),
+    ("step_s = 20", "step_s = nan", ["scenario.toml:10:10: ", "step_s is nan", "finite"]),
+    ("step_s = 20", "step_s = inf", ["scenario.toml:10:10: ", "step_s is inf", "finite"]),
+    ("step_s = 20", "step_s = 1e-9", ["scenario.toml:9:1: ", "the limit is 10000000", "Take a longer step"]),
+    ("seed = 1", "seed = 99999999999999999999", ["scenario.toml:2:28: ", "smaller number"]),
+    ("seed = 1", "seed = -1", ["scenario.toml:2:1: ", "seed = -1", "0 or more"]),
+    ("seed = 1", 'seed = 1\ninclude = "../../etc/passwd"', ["scenario.toml:3:1: ", 'unknown key "include"']),
     ("seed = 1", "seed = 1\nx = " + "[" * 5000 + "]" * 5000, ["scenario.toml:3:", "nested", "Simplify"]),
-    ("[bands]", "[time]\n[bands]", ["scenario.toml:19:1", "'time'", "keep one of them"]),
-    ("umov = 1", "umov = 2", ["scenario.toml:1:1", "umov = 2", "reads 1"]), ("umov = 1\n", "", ["scenario.toml:1:1", '"umov"', "Add it"]),
-    ('mode = "nadir"', 'mode = "inertial", quaternion = [1.001, 0, 0, 0]', ["scenario.toml:16:33", "length 1.001", "1 within 1e-6"]),
-    ('mode = "nadir"', 'mode = "inertial", quaternion = [0, 0, 0, 0]', ["scenario.toml:16:33", "length 0"])])
+    ("[bands]", "[time]\n[bands]", ["scenario.toml:19:1: ", "'time'", "keep one of them"]),
+    ("umov = 1", "umov = 2", ["scenario.toml:1:1: ", "umov = 2", "reads 1"]), ("umov = 1\n", "", ["scenario.toml:1:1: ", '"umov"', "Add it"]),
+    ('mode = "nadir"', 'mode = "inertial", quaternion = [1.001, 0, 0, 0]', ["scenario.toml:16:33: ", "length 1.001", "1 within 1e-6"]),
+    ('mode = "nadir"', 'mode = "inertial", quaternion = [0, 0, 0, 0]', ["scenario.toml:16:33: ", "length 0"])])
 def test_configurations(refused, scenario, old, new, words):
     name = scenario((old, new))
     refused({}, ["run", name], words)
 
 
 @pytest.mark.parametrize("content, words", [
-    (bytes(range(256)), ["a.toml:1:1", "A TOML file was expected"]), (SCENARIO.encode("utf-16"), ["a.toml:1:1", "Save the file as UTF-8"]),
+    (bytes(range(256)), ["a.toml:1:1: ", "A TOML file was expected"]), (SCENARIO.encode("utf-16"), ["a.toml:1:1: ", "Save the file as UTF-8"]),
     (b"", ["a.toml", '"umov"']), (SCENARIO.replace('"HST"', '"H\xfcb"').format(root=ROOT).encode("latin-1"), ["a.toml:13:", "UTF-8"])])
 def test_what_is_no_configuration(refused, content, words):
     refused({"a.toml": content}, ["run", "a.toml"], words)
@@ -193,12 +193,21 @@ HUGE = cards("SIMPLE  =                    T", "BITPIX  =                    8",
 
 
 @pytest.mark.parametrize("name, content, words", [
-    ("a.csv", times("time_tt,mag", lambda k: f"2018-01-21T05:08:{k:02d}Z,5"), ["a.csv:1", "time_utc", "time_tt"]),
-    ("a.csv", times("BJD_TDB,mag", lambda k: f"{2458139.5 + k},5"), ["a.csv:1", "time_utc", "BJD_TDB"]),
-    ("a.csv", times("time_utc;mag", lambda k: f"2018-01-21T05:08:{k:02d}Z;5,3"), ["a.csv:1", "semicolons", "commas were expected"]),
+    ("a.csv", times("time_tt,mag", lambda k: f"2018-01-21T05:08:{k:02d}Z,5"), ["a.csv:1: ", "time_utc", "time_tt"]),
+    ("a.csv", times("BJD_TDB,mag", lambda k: f"{2458139.5 + k},5"), ["a.csv:1: ", "time_utc", "BJD_TDB"]),
+    ("a.csv", times("time_utc;mag", lambda k: f"2018-01-21T05:08:{k:02d}Z;5,3"), ["a.csv:1: ", "semicolons", "commas were expected"]),
     ("a.txt", "# MMT\n" + times("2018-01-21 05:08:00.1 5.2 5.3 0.1 100 30 1 1", lambda k: f"2018-01-21 05:08:{k:02d}.1 5.2 5.3 0.1 100 30 1 1"),
-     ["a.txt:2", "numbers where the names of the columns were expected", "write a line of names", "time_utc"]),
+     ["a.txt:2: ", "numbers where the names of the columns were expected", "write a line of names", "time_utc"]),
     ("a.csv.gz", gzip.compress(bytes(200_000_000)), ["a.csv.gz", "gunzip"]),
+    *[("a.csv", text, ["a.csv:1: ", "semicolons", "commas were expected"]) for text in (
+        "time_utc;mag\n2018-01-21 05:08:10;5,3\n", "time_utc; mag\n2018-01-21T05:08:10Z; 5.3\n", '"time_utc";"mag"\n"2018-01-21T05:08:10Z";"5.3"\n',
+        "time_utc;mag;mag (V, AB)\n2018-01-21T05:08:10Z;5.3;1\n")],
+    *[("a.csv", text, ["a.csv:1: ", "numbers where the names of the columns were expected"]) for text in (
+        times("2018-01-21T05:08:10Z,5.3", lambda k: f"2018-01-21T05:08:{k + 11}Z,5.3"), "2018-01-21T05:08:10Z,V,5.3,0.1\n2018-01-21T05:08:11Z,V,5.3,0.1\n",
+        "2018-01-21T05:08:10Z,V,5.3,V\n2018-01-21T05:08:11Z,V,5.3,V\n", "58139.1 5.3 0.1 0.1\n58139.2 5.3 0.1 0.1\n")],
+    *[("a.csv", text, ["a.csv:1: ", '"mag" stands twice']) for text in (  # beside names that are numbers
+        "time_utc,mag,mag,mag,1,2,3,4,5\n2018-01-21T05:08:10Z,5.3,6,7,1,1,1,1,1\n", "mag,time_utc,1,2,mag,3,4,5\n9.9,2018-01-21T05:08:10Z,6,7,5,1,1,1\n")],
+    ("a.csv", "time,400,500,600,mag\n2018-01-21T05:08:05Z,1,2,3,4\n", ["a.csv:1: no column of time"]),
     ("a.fits", b"SIMPLE  =                    T" + bytes(3000), ["a.fits", "FITS", "Export or fetch it again"]),
     ("a.fits", HUGE, ["a.fits: part 2 ", "32000000000 bytes of data, of which 0 are there", "Export or fetch it again"]),
     ("a.fits", HUGE.replace(b"2000000000", b"    x    1"), ["a.fits: part 2 ", 'NAXIS2 = "x    1"', "a whole number was expected"]),
@@ -219,7 +228,7 @@ def test_values_that_are_hardly_measured(umov, scenario, tmp_path, row, told):
     (tmp_path / "obs.csv").write_text(HEAD + f"2018-01-21T05:08:05Z,{row}\n")
     done = umov("invert", "pose", "obs.csv", "--scenario", scenario(), "--grid", "1000")
     assert done.code in (0, 4), done.err
-    assert told in done.err if told else "obs.csv:3" not in done.err, done.err
+    assert told in done.err if told else "obs.csv:3: " not in done.err, done.err
 
 
 STARS, SEMICOLONS = "ra_deg,dec_deg,mag\n", "are parted by semicolons"
@@ -228,8 +237,8 @@ OBSERVATION = ('[observation]\nexposure_s = 1\nlevel = "image"\nstars = "s.csv"\
 
 @pytest.mark.parametrize("text, words", [
     (STARS, ["s.csv", "no star in this table", "Leave observation.stars out"]), ("", ["s.csv", '"ra_deg"']),
-    ("# unit: deg\nra,dec,mag\n1,2,3\n", ["s.csv:2: ", '"ra_deg"']), (STARS + "1,2\n", ["s.csv:2", "2 cells in a table of 3 columns"]),
-    (STARS + "1,2,nan\n", ["s.csv:2", 'mag = "nan"']), (bytes(range(256)), ["s.csv", "is no text"]), (STARS.replace(",", ";") + "1;2;3\n", ["s.csv:1", SEMICOLONS])])
+    ("# unit: deg\nra,dec,mag\n1,2,3\n", ["s.csv:2: ", '"ra_deg"']), (STARS + "1,2\n", ["s.csv:2: ", "2 cells in a table of 3 columns"]),
+    (STARS + "1,2,nan\n", ["s.csv:2: ", 'mag = "nan"']), (bytes(range(256)), ["s.csv", "is no text"]), (STARS.replace(",", ";") + "1;2;3\n", ["s.csv:1: ", SEMICOLONS])])
 def test_fields_of_stars(refused, scenario, tmp_path, text, words):
     scenario()
     own = (tmp_path / "scenario.toml").read_text().replace("umov = 1\n", 'umov = 1\ninstrument = "c11_imx250"\n').replace('"paper_rgb"', '["nm:550"]')
@@ -238,19 +247,23 @@ def test_fields_of_stars(refused, scenario, tmp_path, text, words):
 
 @pytest.mark.parametrize("text, words", [
     (COUNTS.replace("counts", "cnts", 1), ["c.csv:1: ", '"counts"']), ("# note: a\n" + COUNTS.replace("counts", "cnts", 1), ["c.csv:2: ", '"counts"']),
-    (COUNTS.splitlines()[0] + "\n", ["c.csv", "no row of counts"]), (COUNTS.replace("sky_err", "sky", 1), ["c.csv:1", '"sky" stands twice']),
-    (COUNTS.replace("V", '"V', 1), ["c.csv:2", "a quote is not closed"]), (COUNTS.replace(",", ";"), ["c.csv:1", SEMICOLONS]),
-    (COUNTS.split("\n", 1)[1], ["c.csv:1", "names of the columns were expected"])])
+    (COUNTS.splitlines()[0] + "\n", ["c.csv", "no row of counts"]), (COUNTS.replace("sky_err", "sky", 1), ["c.csv:1: ", '"sky" stands twice']),
+    (COUNTS.replace("V", '"V', 1), ["c.csv:2: ", "a quote is not closed"]), (COUNTS.replace(",", ";"), ["c.csv:1: ", SEMICOLONS]),
+    (COUNTS.split("\n", 1)[1], ["c.csv:1: ", "names of the columns were expected"])])
 def test_tables_of_counts(refused, text, words):
     refused({"c.csv": text}, ["reduce", "c.csv"], words)
 
 
 @pytest.mark.parametrize("text, words", [
-    ("p_percent,pa_deg\n5,2\n", ["k.csv:1", '"name"']), ("# by: me\np_percent,pa_deg\n5,2\n", ["k.csv:2", '"name"']),
-    ("name,p_percent,pa_deg\nstar,200,2\n", ["k.csv:2", '"200"', "0 to 100"]), ("name,p_percent,pa_deg\n", ["k.csv", "no standard in this table"]),
-    ("name;p_percent;pa_deg\n", ["k.csv:1", SEMICOLONS])])
+    ("p_percent,pa_deg\n5,2\n", ["k.csv:1: ", '"name"']), ("# by: me\np_percent,pa_deg\n5,2\n", ["k.csv:2: ", '"name"']),
+    ("name,p_percent,pa_deg\nstar,200,2\n", ["k.csv:2: ", '"200"', "0 to 100"]), ("name,p_percent,pa_deg\n", ["k.csv", "no standard in this table"]),
+    ("name;p_percent;pa_deg\n", ["k.csv:1: ", SEMICOLONS])])
 def test_tables_of_standards(refused, text, words):
     refused({"c.csv": COUNTS, "k.csv": text}, ["calibrate", "c.csv", "--standards", "k.csv"], words)
+
+
+def test_angles_parted_by_semicolons(refused):
+    refused({"l.csv": "angle_deg;counts\n0 ;100\n60 ;50\n"}, ["calibrate", "l.csv", "--polarizer"], ["l.csv:1: ", SEMICOLONS])
 
 
 def test_one_angle_is_not_angles(refused):
@@ -258,8 +271,8 @@ def test_one_angle_is_not_angles(refused):
 
 
 @pytest.mark.parametrize("text, words", [
-    ("[x", ["k.toml:1", "A TOML file was expected"]), ("", ["k.toml", '"efficiency"', "Add it"]),
-    ('efficiency = "high"\n', ["k.toml:1:14", "efficiency is a string", "a number was expected"])])
+    ("[x", ["k.toml:1:3: ", "A TOML file was expected"]), ("", ["k.toml", '"efficiency"', "Add it"]),
+    ('efficiency = "high"\n', ["k.toml:1:14: ", "efficiency is a string", "a number was expected"])])
 def test_calibrations(refused, text, words):
     refused({"c.csv": COUNTS, "k.toml": text}, ["reduce", "c.csv", "--calibration", "k.toml"], words)
 
@@ -268,16 +281,16 @@ INSTRUMENT = (ROOT / "data/instruments/c11_imx250.toml").read_text()
 
 
 @pytest.mark.parametrize("text, words", [
-    ("[telescope\n", ["my.toml:1:11", "A TOML file was expected"]), ("", ["my.toml", '"description"', "Add it"]),
-    (INSTRUMENT.replace("aperture_m = 0.2794", 'aperture_m = "big"'), ["my.toml:6:14", "aperture_m is a string", "a number was expected"]),
-    (INSTRUMENT.replace("aperture_m = 0.2794", "apertur_m = 1"), ["my.toml:6:1", '"apertur_m"', 'Did you mean "aperture_m"?'])])
+    ("[telescope\n", ["my.toml:1:11: ", "A TOML file was expected"]), ("", ["my.toml", '"description"', "Add it"]),
+    (INSTRUMENT.replace("aperture_m = 0.2794", 'aperture_m = "big"'), ["my.toml:6:14: ", "aperture_m is a string", "a number was expected"]),
+    (INSTRUMENT.replace("aperture_m = 0.2794", "apertur_m = 1"), ["my.toml:6:1: ", '"apertur_m"', 'Did you mean "aperture_m"?'])])
 def test_instruments(refused, text, words):
     refused({"my.toml": text}, ["instrument", "show", "my.toml"], words)
 
 
 @pytest.mark.parametrize("text, words", [
-    ("<VOTABLE>", ["b.csv:1", "is no XML", "fetch the file again"]), ("<html>404</html>", ["b.csv:1", "no <TABLE>"]),
-    ('<!DOCTYPE a [<!ENTITY b "c">]><VOTABLE/>', ["b.csv:1", "document type", "remove it"]),
+    ("<VOTABLE>", ["b.csv:1: ", "is no XML", "fetch the file again"]), ("<html>404</html>", ["b.csv:1: ", "no <TABLE>"]),
+    ('<!DOCTYPE a [<!ENTITY b "c">]><VOTABLE/>', ["b.csv:1: ", "document type", "remove it"]),
     ("# unit: nm\n# detector: photon\n500 0\n600 0\n", ["b.csv", "0 everywhere", "was expected"])])
 def test_curves_of_bands(refused, scenario, text, words):
     name = scenario(('"paper_rgb"', '["file:b.csv"]'))
@@ -288,9 +301,9 @@ POSES = "sun_x,sun_y,sun_z,obs_x,obs_y,obs_z"
 
 
 @pytest.mark.parametrize("text, words", [
-    (POSES + "\n1,0,nan,1,0,0\n", ["g.csv:2:5", "sun_z", "finite"]), (POSES + "\n", ["g.csv", "no rows below the header"]),
-    ("", ["g.csv", "no header"]), (POSES + ",pose\n1,0,0,0,1,0,1\n0,1,0,1,0,0,1\n", ["g.csv:3", "two different directions"]),
-    (POSES.replace(",", ";") + "\n", ["g.csv:1", SEMICOLONS, "sun_x"]), ("1,0,0,0,1,0\n", ["g.csv:1", "names of the columns were expected", "sun_x"])])
+    (POSES + "\n1,0,nan,1,0,0\n", ["g.csv:2:5: ", "sun_z", "finite"]), (POSES + "\n", ["g.csv", "no rows below the header"]),
+    ("", ["g.csv", "no header"]), (POSES + ",pose\n1,0,0,0,1,0,1\n0,1,0,1,0,0,1\n", ["g.csv:3: ", "two different directions"]),
+    (POSES.replace(",", ";") + "\n", ["g.csv:1: ", SEMICOLONS, "sun_x"]), (POSES.replace(",", ";") + ";note, free\n", ["g.csv:1: ", SEMICOLONS, "sun_x"]), ("1,0,0,0,1,0\n", ["g.csv:1: ", "names of the columns were expected", "sun_x"])])
 def test_tables_of_poses(refused, scenario, text, words):
     name = scenario()
     refused({"g.csv": text}, ["signature", name, "--geometry", "g.csv"], words)
@@ -341,13 +354,13 @@ def closed(*numbers):
     return close
 
 
-@pytest.mark.parametrize("numbers, code", [((0,), 0), ((2,), 0), ((0, 1, 2), 0), ((1,), 0)])
-def test_descriptors_that_are_closed(scenario, tmp_path, numbers, code):
+@pytest.mark.parametrize("numbers", [(0,), (2,), (0, 1, 2), (1,)])
+def test_descriptors_that_are_closed(scenario, tmp_path, numbers):
     """Descriptor 1 is then the first file that is opened: rows for the output must not go there by chance."""
     call = [UMOV, "signature", scenario(), "--poses", "3", "--phase", "30", "-q", "-o", "out.csv"]
     assert subprocess.run([*call[:-1], "want.csv"], cwd=tmp_path).returncode == 0
     done = subprocess.run(call, cwd=tmp_path, preexec_fn=closed(*numbers))
-    assert done.returncode == code
+    assert done.returncode == 0
     rows = [[line for line in (tmp_path / name).read_text().splitlines() if not line.startswith("#")] for name in ("want.csv", "out.csv")]
     assert rows[0] == rows[1] and len(rows[0]) == 10  # names, three poses in three bands
 

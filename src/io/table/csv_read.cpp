@@ -35,6 +35,8 @@ public:
         return fail(ErrorCode::BadInput,
                     fmt::format("more than {} cells in this row; is it a table?", columns_max),
                     {file_, line_});
+      if (const auto why = why_no_names(content); why && header_.empty())
+        return fail(ErrorCode::BadInput, fmt::format("{}: {}", *why, wanted()), {file_, line_});
       const auto cells = csv_cells(line.substr(0, line.find_last_not_of('\r') + 1));
       if (!cells)
         return fail(ErrorCode::BadInput, "a quote is not closed in this row; close it with \"",

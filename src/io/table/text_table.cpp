@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <umov/core/text.h>
 #include <utility>
@@ -91,14 +92,43 @@ std::size_t end_of_key(std::string_view text) {
 
 } // namespace
 
+namespace {
+
+/// What stands in rows, and hardly is a name: a number, or what begins with a date (ISO 8601).
+bool is_value(std::string_view cell) {
+  constexpr std::string_view date = "0000-00-00";
+  const auto fits = [](char form, char c) {
+    return form == '0' ? c >= '0' && c <= '9' : c == form;
+  };
+  return parse_number(cell) ||
+         (cell.size() >= date.size() && std::equal(date.begin(), date.end(), cell.begin(), fits));
+}
+
+} // namespace
+
+std::optional<std::string> why_no_names(std::string_view line) {
+  bool is_quoted = false;
+  std::ptrdiff_t more = 0; // semicolons than commas
+  for (const char c : line) {
+    is_quoted = is_quoted != (c == '"');
+    if (!is_quoted)
+      more += c == ';' ? 1 : c == ',' ? -1 : 0;
+  }
+  if (more <= 0)
+    return std::nullopt;
+  return "the names of the columns are parted by semicolons; commas were expected. Save it so, "
+         "with points in its numbers";
+}
+
 std::optional<std::string> why_no_names(const std::vector<std::string> &columns) {
-  if (columns.size() == 1 && columns.front().find(';') != std::string::npos)
-    return "the names of the columns are parted by semicolons; commas were expected. Save it so, "
-           "with points in its numbers";
-  const auto is_number = [](const std::string &cell) { return parse_number(cell).has_value(); };
-  if (2 * std::ranges::count_if(columns, is_number) > std::ssize(columns))
-    return "numbers where the names of the columns were expected; write a line of names above them";
-  return std::nullopt;
+  const auto values = std::ranges::count_if(columns, is_value);
+  // Names may hold numbers, such as wavelengths: rows begin with one, or hold no other word.
+  const bool is_row = !columns.empty() &&
+                      (is_value(columns.front()) ? 2 * values >= std::ssize(columns)
+                                                 : values > 0 && values + 1 == std::ssize(columns));
+  if (!is_row)
+    return std::nullopt;
+  return "numbers where the names of the columns were expected; write a line of names above them";
 }
 
 tl::unexpected<Error> without_column(const TextTable &table, const std::string &file,
@@ -162,13 +192,17 @@ Result<void> add_header(TextTable &out, const std::vector<CsvCell> &cells, const
   for (const CsvCell &cell : cells)
     out.columns.push_back(cell.text);
   out.header_line = where.line;
-  std::vector<std::string> sorted = out.columns;
-  std::sort(sorted.begin(), sorted.end());
   // Numbers that stand twice are no names: what looks for its columns says so.
-  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-      twice != sorted.end() && !why_no_names(out.columns))
-    return fail(ErrorCode::BadInput,
-                fmt::format("column \"{}\" stands twice; leave one out", printable(*twice)), where);
+  std::vector<std::string> names;
+  std::ranges::remove_copy_if(out.columns, std::back_inserter(names), is_value);
+  std::ranges::sort(names);
+  if (const auto twice = std::ranges::adjacent_find(names); twice != names.end()) {
+    const auto why = why_no_names(out.columns);
+    return fail(
+        ErrorCode::BadInput,
+        why.value_or(fmt::format("column \"{}\" stands twice; leave one out", printable(*twice))),
+        where);
+  }
   // The line that CSV files of ours have above the names.
   if (const auto told = out.notes.find("unit"); told != out.notes.end())
     if (const auto units = csv_cells(told->second); units && units->size() == out.columns.size())
@@ -249,8 +283,11 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
                               "Split it",
                               line_max, rows_max),
                   where);
-    if (out.columns.empty())
+    if (out.columns.empty()) {
+      if (const auto why = why_no_names(line))
+        return fail(ErrorCode::BadInput, *why, where);
       has_blanks = line.find(',') == std::string_view::npos;
+    }
     if ((out.rows() + 1) * out.columns.size() > table_cells_max)
       return fail(
           ErrorCode::BadInput,

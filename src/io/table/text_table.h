@@ -42,7 +42,10 @@ private:
 /// row or a column that stands twice.
 Result<TextTable> read_text_table(std::string_view text, const std::string &file);
 
-/// Why a first line holds no names of columns: parted by semicolons, or numbers. Empty if it may.
+/// Why the first line, as it stands in the file, holds no names of columns that can be told apart:
+/// parted by semicolons. Empty if it may.
+std::optional<std::string> why_no_names(std::string_view line);
+/// Why its cells are no names: they are numbers and times. Empty if they may be.
 std::optional<std::string> why_no_names(const std::vector<std::string> &columns);
 
 /// Of a table without a column that it must have: `message`, or why it has no names at all before

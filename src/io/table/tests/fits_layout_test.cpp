@@ -86,11 +86,11 @@ void expect_rows(const std::string &bytes, const char *what) {
 TEST(FitsLayout, FormsOfOtherWritersAreRead) {
   const std::string whole = primary() + table();
   const std::string unpadded = primary() + table_header() + rows();
-  const std::string ascii = header(
-      {"XTENSION= 'TABLE   '", number("BITPIX", 8), number("NAXIS", 2), number("NAXIS1", 16),
-       number("NAXIS2", 2), number("PCOUNT", 0), number("GCOUNT", 1), number("TFIELDS", 2),
-       "TTYPE1  = 'mjd_utc '", number("TBCOL1", 1), "TFORM1  = 'F8.2    '", "TTYPE2  = 'mag     '",
-       number("TBCOL2", 10), "TFORM2  = 'F4.2    '"});
+  const std::string ascii =
+      header({"XTENSION= 'TABLE   '", number("BITPIX", 8), number("NAXIS", 2), number("NAXIS1", 16),
+              number("NAXIS2", 2), number("PCOUNT", 0), number("GCOUNT", 1), number("TFIELDS", 2),
+              "TTYPE1  = 'mjd_utc '", number("TBCOL1", 1), "TFORM1  = 'F8.2    '",
+              "TTYPE2  = 'mag     '", number("TBCOL2", 10), "TFORM2  = 'F4.2    '"});
   const std::string groups =
       header({simple, number("BITPIX", -32), number("NAXIS", 2), number("NAXIS1", 0),
               number("NAXIS2", 700), "GROUPS  =                    T", number("PCOUNT", 20),
@@ -101,8 +101,8 @@ TEST(FitsLayout, FormsOfOtherWritersAreRead) {
        "TTYPE1  = 'COMPRESSED_DATA'", "TFORM1  = '1PB(10) '", "ZIMAGE  =                    T",
        "ZCMPTYPE= 'RICE_1  '", number("ZBITPIX", 8), number("ZNAXIS", 1), number("ZNAXIS1", 4),
        number("ZTILE1", 4), "ZNAME1  = 'BLOCKSIZE'", number("ZVAL1", 32)});
-  const std::string bare = header({"XTENSION= 'IMAGE   '", number("BITPIX", 8), number("NAXIS", 1),
-                                   number("NAXIS1", 12)});
+  const std::string bare = header(
+      {"XTENSION= 'IMAGE   '", number("BITPIX", 8), number("NAXIS", 1), number("NAXIS1", 12)});
   const std::string filled(2880, '\0');
   expect_rows(whole, "plain");
   expect_rows(header({simple, number("BITPIX", 8), number("NAXIS", 1), number("NAXIS1", 3000)}) +
@@ -137,10 +137,9 @@ TEST(FitsLayout, OthersAreRefusedWithPartAndKeyword) {
   const std::string whole = primary() + table();
   const std::string bad = with(table(), number("TFIELDS", 2), "TFIELDS =                    x");
   const std::string shell = image(static_cast<std::int64_t>(bad.size()));
-  const std::string groups =
-      header({simple, number("BITPIX", 8), number("NAXIS", 2), number("NAXIS1", 0),
-              number("NAXIS2", 2880), "GROUPS  =                    T", number("PCOUNT", 0),
-              number("GCOUNT", 1)});
+  const std::string groups = header(
+      {simple, number("BITPIX", 8), number("NAXIS", 2), number("NAXIS1", 0), number("NAXIS2", 2880),
+       "GROUPS  =                    T", number("PCOUNT", 0), number("GCOUNT", 1)});
   for (const auto &[bytes, words] :
        {std::pair<std::string, const char *>{
             primary() + bad, "part 2 of the FITS file has TFIELDS = \"x\", where a whole number"},
@@ -151,15 +150,18 @@ TEST(FitsLayout, OthersAreRefusedWithPartAndKeyword) {
         {groups + shell + bad, "part 2 of the FITS file has TFIELDS = \"x\""},
         {with(groups, number("NAXIS1", 0), number("NAXIS1", 1)) + table(),
          "part 1 of the FITS file has NAXIS1 = 1, where 0 was expected"},
-        {with(whole, "'BINTABLE'", "'BINTABL\xc9'"), "part 2 of the FITS file has bytes in XTENSION"},
+        {with(whole, "'BINTABLE'", "'BINTABL\xc9'"),
+         "part 2 of the FITS file has bytes in XTENSION"},
         {with(whole, "'D  ", "'D\t "), "part 2 of the FITS file has bytes in TFORM1"},
         {with(whole, number("NAXIS", 2), number("NAXIS", 3)),
          "part 2 of the FITS file has NAXIS = 3, where 2 was expected"},
         {with(whole, number("NAXIS2", 2), number("NAXIS2", -1)),
          "part 2 of the FITS file has NAXIS2 = -1, where 0 to "},
         {with(whole, "GCOUNT", "GCOUNX"), "part 2 of the FITS file has no GCOUNT"},
-        {with(whole, number("BITPIX", 8), number("BITPIX", 7)), "part 1 of the FITS file has BITPIX"},
-        {primary() + with(table(), card("END"), card("FIN")), "part 2 of the FITS file has a header without"},
+        {with(whole, number("BITPIX", 8), number("BITPIX", 7)),
+         "part 1 of the FITS file has BITPIX"},
+        {primary() + with(table(), card("END"), card("FIN")),
+         "part 2 of the FITS file has a header without"},
         {primary() + table_header() + rows().substr(0, 31),
          "part 2 of the FITS file tells of 32 bytes of data, of which 31 are there"},
         {primary() + table_header().substr(0, 700), "part 2 of the FITS file has a header without"},
