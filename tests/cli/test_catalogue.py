@@ -223,12 +223,17 @@ HEAD = "# pol_frame: altaz\ntime_utc,band,I,I_err,q,u,q_err,u_err\n"
     ("nm:550,1e-9,1e-11,.9,.9,.01,.01", None), ("nm:550,1e-9,1e-11,1.04,0,.01,.01", None),  # by less than five of .01
     ("nm:550,1e-9,1e-11,1.06,0,.01,.01", "obs.csv:3: 1 row with |q| or |u| above 1 by more than five standard deviations"),
     ("nm:550,1e-9,1e-11,.1,-1.06,.01,.01", "obs.csv:3: 1 row with |q| or |u| above 1"),
+    ("nm:550,1e-9,1e-11,1.000000001,0,,", None), ("nm:550,1e-9,1e-11,-1.009,0,,", None),
+    ("nm:550,1e-9,1e-11,1.02,0,,", "obs.csv:3: 1 row with |q| or |u| above 1.01 and no error"),
+    ("nm:550,1e-9,1e-11,0,-1.02,.01,", "obs.csv:3: 1 row with |q| or |u| above 1.01 and no error"),
+    ("nm:550,1e-9,1e-11,1.02,0,0,0", "obs.csv:3: 1 row with an error of 0"),  # one fault, one warning
     ("nm:550,1e-9,0,.1,0,.01,.01", "obs.csv:3: 1 row with an error of 0"), ("nm:550,1e-9,1e-11,.1,0,0,.01", "obs.csv:3: 1 row with an error of 0")])
 def test_values_that_are_hardly_measured(umov, scenario, tmp_path, row, told):
     (tmp_path / "obs.csv").write_text(HEAD + f"2018-01-21T05:08:05Z,{row}\n")
     done = umov("invert", "pose", "obs.csv", "--scenario", scenario(), "--grid", "1000")
     assert done.code in (0, 4), done.err
     assert told in done.err if told else "obs.csv:3: " not in done.err, done.err
+    assert done.err.count("obs.csv:3") == (told is not None), done.err
 
 
 STARS, SEMICOLONS = "ra_deg,dec_deg,mag\n", "are parted by semicolons"

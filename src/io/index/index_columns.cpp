@@ -130,6 +130,16 @@ Result<void> check_row(const Row &row, std::size_t columns, double before,
   return {};
 }
 
+/// The first row with an n or k that is none of any substance; of other faults the first.
+const Row &odd_row(const std::vector<Row> &rows) {
+  const auto is_odd = [](const Row &row) {
+    const double k = row.words.size() == 3 ? *parse_number(row.words[2]) : 0;
+    return !check_index(constant_index({*parse_number(row.words[1]), k}));
+  };
+  const auto at = std::ranges::find_if(rows, is_odd);
+  return at == rows.end() ? rows.front() : *at;
+}
+
 /// A table in nm whose header says um is 1000 times off, and is read without a word.
 Result<double> unit_of(const std::string &header, double first, double last, const Where &where) {
   double unit = unit_in(header);
@@ -192,7 +202,7 @@ Result<IndexTable> read_index_columns(std::string_view text, const std::string &
   if (out.has_k)
     out.k = {nm, k};
   if (auto checked = check_index(out); !checked)
-    return fail(ErrorCode::BadInput, checked.error().message, begin);
+    return fail(ErrorCode::BadInput, checked.error().message, {file, odd_row(rows).line});
   return out;
 }
 

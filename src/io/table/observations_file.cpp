@@ -313,8 +313,16 @@ void warn_of_order(const ObservationsFile &file, Diagnostics &diagnostics) {
 bool is_too_polarized(const ObservedRow &row) {
   constexpr double chance = 5; // standard deviations
   const auto is_above = [](double part, double variance) {
-    const double sd = std::isnan(variance) ? 0 : std::sqrt(variance);
-    return std::abs(part) > 1 + chance * sd;
+    return variance > 0 && std::abs(part) > 1 + chance * std::sqrt(variance);
+  };
+  return is_above(row.q, row.cov_qq) || is_above(row.u, row.cov_uu);
+}
+
+/// The same where no error tells how far that is: what good polarimeters are off at most.
+bool is_too_polarized_without_error(const ObservedRow &row) {
+  constexpr double accuracy = 0.01;
+  const auto is_above = [](double part, double variance) {
+    return std::isnan(variance) && std::abs(part) > 1 + accuracy;
   };
   return is_above(row.q, row.cov_qq) || is_above(row.u, row.cov_uu);
 }
@@ -338,6 +346,9 @@ void warn_of_values(const ObservationsFile &file, Diagnostics &diagnostics) {
   warn(is_too_polarized, " with |q| or |u| above 1 by more than five standard deviations: light "
                          "is polarized by no more than all of it. Are they parts of I, and are "
                          "their errors right?");
+  warn(is_too_polarized_without_error,
+       " with |q| or |u| above 1.01 and no error: light is polarized by no more than all of it. "
+       "Are they parts of I? Give their errors in columns q_err and u_err");
   warn(has_error_of_0, " with an error of 0: nothing is measured exactly. Leave the cell empty "
                        "where the error is not known");
 }
