@@ -28,7 +28,9 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
       if (!cells)
         return refuse("a quote is not closed");
       for (const CsvCell &cell : *cells) {
-        if (std::ranges::find(keys, cell.text) != keys.end())
+        // Spreadsheets end lines in empty cells: columns without a keyword, of which put() tells
+        // where they hold something.
+        if (!cell.text.empty() && std::ranges::find(keys, cell.text) != keys.end())
           return refuse(printable(cell.text) +
                         " stands twice among the keywords. Keep one of them.");
         keys.push_back(cell.text);
@@ -42,7 +44,8 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
                                 std::to_string(keys.size()) + " as in the line of keywords"
                           : std::string("a quote is not closed"));
     for (std::size_t k = 0; done && k < keys.size(); ++k)
-      done = put(message, file, keys[k], {(*cells)[k].text, "", line_number});
+      if (!keys[k].empty() || !(*cells)[k].text.empty())
+        done = put(message, file, keys[k], {(*cells)[k].text, "", line_number});
     if (done)
       UMOV_TRY(sink(std::move(message)));
     else

@@ -2,6 +2,7 @@
 
 #include "io/elements/tle_line.h"
 
+#include <algorithm>
 #include <cmath>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
@@ -64,26 +65,31 @@ private:
   Where where_;
 };
 
+/// What people meant who wrote this before four digits, where it is no letter of Alpha-5.
+char meant_by(char letter) {
+  if (letter == 'i' || letter == 'l' || letter == 'I')
+    return '1';
+  if (letter == 'o' || letter == 'O')
+    return '0';
+  return static_cast<char>(letter - 'a' + 'A');
+}
+
 /// Five digits, or Alpha-5: a first letter without I and O counts tens of thousands from 10 on.
 Result<int> catalogue_number(const Line &line, const std::string &file) {
   const Field field(line, file, 3, 7, "the catalogue number");
   const std::string_view text = field.text();
-  if (text.size() == 5 && text[0] >= 'a' && text[0] <= 'z')
-    return field.refuse("a capital where Alpha-5 has a letter",
-                        std::string("Did you mean '") + static_cast<char>(text[0] - 'a' + 'A') +
-                            "'?");
-  if (text.size() != 5 || !(text[0] >= 'A' && text[0] <= 'Z'))
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  if (text.size() != 5 || !is_letter(text[0]))
     return field.whole(false);
+  if (!std::ranges::all_of(text.substr(1), is_digit))
+    return field.refuse("five digits, or a capital letter and four digits", "Fetch the set again.");
   constexpr std::string_view letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
   const std::size_t letter = letters.find(text[0]);
   if (letter == std::string_view::npos)
-    return field.refuse("an Alpha-5 letter other than I and O",
-                        std::string("Did you mean '") + (text[0] == 'I' ? '1' : '0') + "'?");
-  const Field rest(line, file, 4, 7, "the catalogue number after its letter");
-  const Result<int> low = rest.whole(false);
-  if (!low || rest.text().size() != 4)
-    return field.refuse("a letter and four digits", "Fetch the set again.");
-  return (static_cast<int>(letter) + 10) * 10000 + *low;
+    return field.refuse("five digits, or a capital letter other than I and O and four digits",
+                        std::string("Did you mean '") + meant_by(text[0]) + "'?");
+  UMOV_ASSIGN(low, Field(line, file, 4, 7, "the catalogue number").whole(false));
+  return (static_cast<int>(letter) + 10) * 10000 + low;
 }
 
 Result<void> read_epoch(const Line &line, const std::string &file, ElementSet &set,
