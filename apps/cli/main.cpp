@@ -82,7 +82,11 @@ int usage_error(const CLI::App &app, const CLI::ParseError &problem) {
   } else if (const auto verbs = verbs_of(verb); !verbs.empty()) {
     text = fmt::format("no verb was given; there are {}", fmt::join(verbs, ", "));
   } else if (constexpr std::string_view unread = "Could not convert: "; text.starts_with(unread)) {
-    text = text.substr(unread.size()) + "; a number was expected"; // texts need no conversion
+    // Texts need no conversion.
+    text = text.substr(unread.size());
+    const auto *option = verb.get_option_no_throw(text.substr(0, text.find(' ')));
+    const bool is_whole = option != nullptr && option->get_type_name().find("INT") != text.npos;
+    text += is_whole ? "; a whole number was expected" : "; a number was expected";
   } else if (const std::size_t end = text.find('\n'); end != std::string::npos) {
     text.resize(end);
   }

@@ -87,11 +87,27 @@ def changed(form, edit):
 @pytest.mark.parametrize("make, words", [
     (changed("csv", lambda text: text.replace("BSTAR", "BSTAR,BSTAR", 1)), ["o.txt:1: BSTAR stands twice among the keywords"]),
     (changed("json", lambda text: text[:100]), ["o.txt:2:", "is no JSON", "Fetch the sets again"]),
-    (changed("json", lambda text: re.sub('"BSTAR":[^,]*', '"BSTAR":1e400', text)), ["o.txt", "1e400", "a finite number was expected", "Correct it"]),
     (changed("xml", lambda text: text[:300]), ["o.txt:12: ", "is no XML", "fetch the file again"]),
     (lambda forms: "[" * 10000, ["o.txt:1: ", "nested deeper", "Fetch the sets again"])])
 def test_broken_omm(refused, forms, make, words):
     refused({"o.txt": make(forms)}, ["orbit", "propagate", "--orbit", "o.txt", *AT], words)
+
+
+def test_a_number_that_no_double_holds_has_its_place(refused, forms):
+    text = re.sub('"BSTAR":[^,]*', '"BSTAR":1e400', forms["json"]).replace('"HST"', '"a \\\\\\" 1e400"')
+    line, column = next((k, row.index("1e400", row.index("BSTAR")) + 1) for k, row in enumerate(text.splitlines(), 1) if "BSTAR" in row)
+    refused({"o.txt": text}, ["orbit", "propagate", "--orbit", "o.txt", *AT],
+            [f"o.txt:{line}:{column}: ", "'1e400'", "a finite number was expected", "Correct it"])
+
+
+def test_columns_of_spreadsheets_without_a_keyword(umov, refused, forms, tmp_path):
+    head, row = forms["csv"].splitlines()[-2:]
+    for name, end in (("plain.csv", ""), ("ends.csv", ",,")):
+        (tmp_path / name).write_text(f"{head}{end}\n{row}{end}\n")
+    told = [umov("orbit", "show", "--orbit", name, "--json") for name in ("plain.csv", "ends.csv")]
+    assert told[0].code == told[1].code == 0 and told[0].out == told[1].out, told[1].err
+    column = len(row.split(",")) + 2
+    refused({"o.txt": f"{head},,\n{row},,7\n"}, ["orbit", "propagate", "--orbit", "o.txt", *AT], ["o.txt:2", f'"7" stands below no keyword, in column {column}'])
 
 
 def gltf(change, binary=None):
@@ -338,6 +354,8 @@ def test_folders_of_others_are_not_written_into(refused, scenario, name, text, w
 
 @pytest.mark.parametrize("call, words", [
     (["signature", "scenario.toml", "--poses", "1", "--phase", "x"], ["--phase = x", "a number was expected"]),
+    (["orbit", "show", "--orbit", "a.tle", "--norad", "1.5"], ["--norad = 1.5; a whole number was expected"]),
+    (["orbit", "show", "--orbit", "a.tle", "--norad", "x"], ["--norad = x; a whole number was expected"]),
     (["signature", "scenario.toml", "--poses", "1", "--phase", "30", "--threads", "1e9"], ["--threads", "1e9", "0 to 1024"]),
     (["signature", "scenario.toml", "--poses", "1", "--phase", "30", "-o", "folder"], ["-o folder", ".csv, .ecsv, .fits, .json"]),
     (["mesh", "make", "sphere", "--radius", "nan", "-o", "a.obj"], ["--radius", "finite", "nan"])])

@@ -28,8 +28,7 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
       if (!cells)
         return refuse("a quote is not closed");
       for (const CsvCell &cell : *cells) {
-        // Spreadsheets end lines in empty cells: columns without a keyword, of which put() tells
-        // where they hold something.
+        // Spreadsheets end lines in empty cells: columns without a keyword.
         if (!cell.text.empty() && std::ranges::find(keys, cell.text) != keys.end())
           return refuse(printable(cell.text) +
                         " stands twice among the keywords. Keep one of them.");
@@ -43,9 +42,14 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
       done = refuse(cells ? std::to_string(cells->size()) + " cells, expected " +
                                 std::to_string(keys.size()) + " as in the line of keywords"
                           : std::string("a quote is not closed"));
-    for (std::size_t k = 0; done && k < keys.size(); ++k)
-      if (!keys[k].empty() || !(*cells)[k].text.empty())
-        done = put(message, file, keys[k], {(*cells)[k].text, "", line_number});
+    for (std::size_t k = 0; done && k < keys.size(); ++k) {
+      const std::string &cell = (*cells)[k].text;
+      if (!keys[k].empty())
+        done = put(message, file, keys[k], {cell, "", line_number});
+      else if (!cell.empty())
+        done = refuse("\"" + printable(cell) + "\" stands below no keyword, in column " +
+                      std::to_string(k + 1) + ". Name it, or take it out.");
+    }
     if (done)
       UMOV_TRY(sink(std::move(message)));
     else

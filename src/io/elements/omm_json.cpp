@@ -38,6 +38,22 @@ std::size_t line_too_deep(std::string_view text) {
   return 0;
 }
 
+/// Where a number stands that the parser tells of in quotes, without its place.
+std::size_t byte_of_number(std::string_view text, std::string_view words) {
+  const std::size_t quote = words.find('\'');
+  const std::string_view number = words.substr(quote + 1, words.rfind('\'') - quote - 1);
+  bool is_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '"')
+      is_text = !is_text;
+    else if (is_text && text[i] == '\\')
+      ++i;
+    else if (!is_text && text.substr(i).starts_with(number))
+      return i;
+  }
+  return text.size();
+}
+
 std::string text_of(const nlohmann::json &value) {
   if (value.is_string())
     return value.get<std::string>();
@@ -82,10 +98,11 @@ Result<void> read_json(std::string_view text, const std::string &file, const Sin
                     ". Fetch the sets again.",
                 {file, line, column});
   } catch (const nlohmann::json::exception &problem) { // a number that no double holds
+    const auto [line, column] = line_and_column(text, byte_of_number(text, problem.what()));
     return fail(ErrorCode::BadInput,
                 "is no JSON of element sets: " + json_words(problem.what()) +
                     "; a finite number was expected. Correct it, or fetch the sets again.",
-                {file});
+                {file, line, column});
   }
   if (!twice.empty())
     return fail(ErrorCode::BadInput, twice + " stands twice. Keep one of them.", {file});

@@ -29,9 +29,7 @@ Result<MeasuredBrdf> read_measured(std::string_view text, const std::string &fil
     // A name is missing, or a cell is no number: read as needed, the reader says which, and where.
     std::vector<std::string> all{"wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg", "m00"};
     all.insert(all.end(), others.begin(), others.end());
-    UMOV_ASSIGN(whole, read_csv(text, file, all));
-    table = std::move(whole);
-    there = others.size();
+    return tl::unexpected(read_csv(text, file, all).error());
   }
   std::vector<BrdfSample> samples(table.rows());
   for (std::size_t i = 0; i < samples.size(); ++i) {
