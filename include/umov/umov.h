@@ -22,7 +22,6 @@
 #include <umov/core/mapped_file.h>
 #include <umov/core/median.h>
 #include <umov/core/parallel.h>
-#include <umov/core/parse_place.h>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>
 #include <umov/core/result.h>

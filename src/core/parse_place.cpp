@@ -1,4 +1,4 @@
-#include <umov/core/parse_place.h>
+#include "core/parse_place.h"
 
 #include <algorithm>
 #include <umov/core/text.h>

@@ -1,11 +1,11 @@
 #include <umov/scale/job_folder.h>
 
+#include "core/parse_place.h"
 #include "scale/whole_number.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <umov/core/parse_place.h>
 #include <umov/core/text.h>
 
 namespace umov::scale {

@@ -347,7 +347,8 @@ def test_what_is_no_job_in_a_folder(refused, verb, text):
 
 
 @pytest.mark.parametrize("name, text, word", [
-    ("manifest.json", "{}", "no manifest.json of umov"), ("manifest.json", "{", "no manifest.json of umov"), ("a.txt", "x", '"a.txt", which umov did not write')])
+    ("manifest.json", "{}", "a manifest.json that umov did not write"), ("manifest.json", "{", "a manifest.json that umov did not write"),
+    ("log.txt", "x", '"log.txt" and no manifest.json of umov'), ("frames/frame_1.fits", "x", '"frames" and no manifest.json of umov'), ("a.txt", "x", '"a.txt", which umov did not write')])
 def test_folders_of_others_are_not_written_into(refused, scenario, name, text, word):
     refused({f"out/{name}": text}, ["run", scenario()], ["out: holds", word, "--force"], code=6)
 

@@ -1,5 +1,6 @@
+#include "core/parse_place.h"
+
 #include <gtest/gtest.h>
-#include <umov/core/parse_place.h>
 
 namespace umov {
 namespace {

@@ -2,10 +2,11 @@
 
 #include "io/elements/omm_message.h"
 
+#include "core/parse_place.h"
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <umov/core/parse_place.h>
 #include <umov/core/text.h>
 
 namespace umov::omm {

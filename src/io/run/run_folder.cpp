@@ -123,9 +123,16 @@ std::string stranger_in(const fs::path &folder) {
 
 /// Why a folder with something in it is not ours to replace.
 std::string in_the_way(const fs::path &folder) {
-  const std::string stranger = stranger_in(folder);
-  return stranger.empty() ? "files of a run and no manifest.json of umov"
-                          : fmt::format("\"{}\", which umov did not write", printable(stranger));
+  if (const std::string stranger = stranger_in(folder); !stranger.empty())
+    return fmt::format("\"{}\", which umov did not write", printable(stranger));
+  std::error_code code;
+  if (fs::exists(folder / "manifest.json", code))
+    return "a manifest.json that umov did not write";
+  const fs::directory_iterator first(folder, code);
+  return fmt::format("{} and no manifest.json of umov",
+                     code || first == fs::directory_iterator()
+                         ? std::string("something")
+                         : "\"" + printable(first->path().filename().string()) + "\"");
 }
 
 bool is_free(const fs::path &folder) {

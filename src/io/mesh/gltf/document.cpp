@@ -1,5 +1,6 @@
 #include "io/mesh/gltf/document.h"
 
+#include "core/parse_place.h"
 #include "io/mesh/bytes.h"
 #include "io/mesh/mesh_parts.h"
 
@@ -9,7 +10,6 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <tuple>
-#include <umov/core/parse_place.h>
 #include <umov/core/stop.h>
 
 namespace umov::mesh_io::gltf {

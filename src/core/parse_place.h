@@ -1,5 +1,5 @@
 #pragma once
-// What the parser of a library says of a text, as a message of ours has it.
+// Private: what the parser of a library says of a text, as a message of ours has it.
 
 #include <cstddef>
 #include <string>
