@@ -36,12 +36,12 @@ double parabola(const std::array<double, 3> &t, const std::array<double, 3> &v, 
 } // namespace
 
 Result<std::vector<FieldStar>> field_of(const ScenarioObservation &o,
-                                        std::vector<InputFile> &inputs) {
+                                        std::vector<InputFile> &inputs, Diagnostics &diagnostics) {
   if (o.stars.empty())
     return std::vector<FieldStar>();
   UMOV_ASSIGN(text, read_file(o.stars));
   inputs.push_back({o.stars, sha256_hex(text)});
-  return read_stars_text(text, o.stars);
+  return read_stars_text(text, o.stars, diagnostics);
 }
 
 double trail_feature_s(const ScenarioObservation &o, const Track &track,

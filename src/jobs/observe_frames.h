@@ -10,7 +10,7 @@ namespace umov::jobs {
 
 /// The field of the observation; none without a file. `inputs` gets it.
 Result<std::vector<FieldStar>> field_of(const ScenarioObservation &observation,
-                                        std::vector<InputFile> &inputs);
+                                        std::vector<InputFile> &inputs, Diagnostics &diagnostics);
 /// Time in which a trail grows by half a width where it grows fastest; 0 where the object is
 /// followed, or no frames are made.
 double trail_feature_s(const ScenarioObservation &observation, const Track &track,

@@ -95,7 +95,7 @@ Result<ObservedObject> ObservedObject::load(const ObservationPlan &plan, std::ui
                                    .cancel = monitor.cancel},
                                   diagnostics));
   ObservedObject out(plan, number, std::move(loaded));
-  UMOV_ASSIGN(stars, field_of(*plan.scenario.observation, out.inputs_));
+  UMOV_ASSIGN(stars, field_of(*plan.scenario.observation, out.inputs_, diagnostics));
   out.stars_ = std::move(stars);
   return std::move(out);
 }

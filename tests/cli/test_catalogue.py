@@ -257,13 +257,30 @@ OBSERVATION = ('[observation]\nexposure_s = 1\nlevel = "image"\nstars = "s.csv"\
 
 
 @pytest.mark.parametrize("text, words", [
-    (STARS, ["s.csv", "no star in this table", "Leave observation.stars out"]), ("", ["s.csv", '"ra_deg"']),
+    ("", ["s.csv", '"ra_deg"']),
     ("# unit: deg\nra,dec,mag\n1,2,3\n", ["s.csv:2: ", '"ra_deg"']), (STARS + "1,2\n", ["s.csv:2: ", "2 cells in a table of 3 columns"]),
     (STARS + "1,2,nan\n", ["s.csv:2: ", 'mag = "nan"']), (bytes(range(256)), ["s.csv", "is no text"]), (STARS.replace(",", ";") + "1;2;3\n", ["s.csv:1: ", SEMICOLONS])])
 def test_fields_of_stars(refused, scenario, tmp_path, text, words):
     scenario()
     own = (tmp_path / "scenario.toml").read_text().replace("umov = 1\n", 'umov = 1\ninstrument = "c11_imx250"\n').replace('"paper_rgb"', '["nm:550"]')
     refused({"scenario.toml": own + OBSERVATION, "s.csv": text}, ["observe", "scenario.toml"], words)
+
+
+def test_an_empty_field_is_warned_of(umov, scenario, tmp_path):
+    scenario()
+    own = (tmp_path / "scenario.toml").read_text().replace("umov = 1\n", 'umov = 1\ninstrument = "c11_imx250"\n').replace('"paper_rgb"', '["nm:550"]')
+    told = {}
+    for name, text in (("with", own + OBSERVATION), ("without", (own + OBSERVATION).replace('stars = "s.csv"\n', ""))):
+        (tmp_path / name).mkdir()
+        for path in [path for path in tmp_path.iterdir() if path.is_file()]:
+            (tmp_path / name / path.name).write_bytes(path.read_bytes())
+        (tmp_path / name / "scenario.toml").write_text(text)
+        (tmp_path / name / "s.csv").write_text(STARS)
+        told[name] = umov("observe", f"{name}/scenario.toml", "-o", f"{name}/out", timeout=120)
+        assert told[name].code == 0, told[name].err
+    assert "s.csv: no star in this table: the field is empty" in told["with"].err and "no star" not in told["without"].err
+    rows = [[line for line in (tmp_path / name / "out/counts.csv").read_text().splitlines() if not line.startswith("#")] for name in told]
+    assert rows[0] == rows[1] and len(rows[0]) > 1
 
 
 @pytest.mark.parametrize("text, words", [

@@ -6,7 +6,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
   using namespace umov;
-  const auto read = read_stars_text(fuzz::text_of(data, size), "input");
+  Diagnostics diagnostics;
+  const auto read = read_stars_text(fuzz::text_of(data, size), "input", diagnostics);
   if (!fuzz::is_read(read))
     return 0;
   for (const FieldStar &star : *read) {

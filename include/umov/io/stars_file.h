@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <umov/core/diagnostics.h>
 #include <umov/core/result.h>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct FieldStar {
 };
 
 /// Reads CSV or ECSV with the columns ra_deg, dec_deg and mag. BadInput with line and column for
-/// what is missing or no number.
-Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std::string &file);
+/// what is missing or no number; a warning for a table without a row, which is an empty field.
+Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std::string &file,
+                                               Diagnostics &diagnostics);
 
 } // namespace umov

@@ -20,7 +20,8 @@ constexpr Wanted wanted[] = {{"ra_deg", 0, 360, &FieldStar::ra_deg},
 
 } // namespace
 
-Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std::string &file) {
+Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std::string &file,
+                                               Diagnostics &diagnostics) {
   UMOV_ASSIGN(table, read_text_table(text, file));
   std::vector<FieldStar> out(table.rows());
   for (const Wanted &one : wanted) {
@@ -39,10 +40,7 @@ Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std:
     }
   }
   if (out.empty())
-    return fail(ErrorCode::BadInput,
-                "no star in this table; a row of ra_deg, dec_deg and mag for each was expected. "
-                "Leave observation.stars out where the field has none",
-                {file});
+    diagnostics.warn("no star in this table: the field is empty. Is it the right file?", {file});
   return out;
 }
 
