@@ -24,6 +24,8 @@ namespace {
 /// Of a gain that a start told, in parts of it: no point of a filter, sqrt(3) standard deviations
 /// off, has light below 0.
 constexpr double gain_open = 0.5;
+/// Share of the probability from which on a filter's doubt is the bank's.
+constexpr double counting_share = 0.01;
 
 } // namespace
 
@@ -131,7 +133,7 @@ Result<TrackStep> AttitudeBank::step(const ObservedCurve &epoch, double seconds)
 /// becomes narrow at the first place that fits. By the rate's and the attitude's own errors, which
 /// are not folded at half a turn as attitudes are.
 void AttitudeBank::look_for_width(double seconds) {
-  constexpr double wide_rad = 15 * pi / 180, light = 0.01;
+  constexpr double wide_rad = 15 * pi / 180;
   const double open_rad = pi / std::sqrt(3.0); // points of it lie beyond half a turn
   double wide = 0, open = 0;
   for (const TrackMode &mode : modes_) {
@@ -143,8 +145,8 @@ void AttitudeBank::look_for_width(double seconds) {
     wide += most > wide_rad ? std::exp(mode.log_weight) : 0;
     open += most > open_rad ? std::exp(mode.log_weight) : 0;
   }
-  memory_.is_wide = memory_.is_wide || wide > light;
-  if (loss_ == TrackLoss::None && open > light)
+  memory_.is_wide = memory_.is_wide || wide > counting_share;
+  if (loss_ == TrackLoss::None && open > counting_share)
     loss_ = TrackLoss::Open;
 }
 
@@ -191,7 +193,8 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
       const FilterUpdate::Bend bend =
           all[k].is_whole ? FilterUpdate::Bend{} : all[k].update->bend();
       const bool is_bent = bend.square > straight, is_full = all.size() + 2 > most;
-      memory_.is_wide = memory_.is_wide || (is_bent && is_full);
+      memory_.is_wide = memory_.is_wide ||
+                        (is_bent && is_full && all[k].mode.log_weight > std::log(counting_share));
       if (!is_bent || is_full) {
         all[k].is_whole = true;
         all[k].update->step();
