@@ -324,7 +324,7 @@ def invert_track(light: AnyCurves, scenario: AnyScenario, start: Inversion | str
     >>> green = {"bands.set": ["nm:550"]}
     >>> curve = umov.run(EXAMPLES / "agena_maui.toml", set={**still, **green, "time.stop": "2018-01-21T05:20:00Z"})
     >>> found = umov.invert_pose(curve, EXAMPLES / "agena_maui.toml", set=green, fit=umov.Fit(grid=1000))
-    >>> later = umov.run(EXAMPLES / "agena_maui.toml", set={**still, **green, "time.start": "2018-01-21T05:20:20Z"})
+    >>> later = umov.run(EXAMPLES / "agena_maui.toml", set={**still, **green, "time.start": "2018-01-21T05:20:20Z", "time.stop": "2018-01-21T05:22:00Z"})
     >>> held = umov.invert_track(later, EXAMPLES / "agena_maui.toml", found, set=green)
     >>> list(held.tables), held.values["lost_utc"]
     (['modes', 'track', 'fit'], None)
