@@ -314,8 +314,8 @@ def invert_track(light: AnyCurves, scenario: AnyScenario, start: Inversion | str
     Notes
     -----
     The table "track" has a row for each epoch and filter: attitude, rate, their errors, weight, chi-square of what came
-    against what was expected; "modes" what is known at the end. The verdict is "no_fit" from when on no filter explains
-    the light (`values["lost_utc"]`). `InputError` for a start that is none, and where no observation is later than its data.
+    against what was expected; "modes" what is known at the end. The verdict is "no_fit" where the likeliest filter no
+    longer explains the light (from `values["lost_utc"]` on). `InputError` for a start that is none, and where no observation is later than its data.
     Source: docs/theory/inverse.md, section 14.
 
     Examples

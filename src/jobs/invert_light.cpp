@@ -143,6 +143,12 @@ PoseLighting by_masks(const SearchedLight &ready, unsigned threads, const Monito
   };
 }
 
+/// The same with the parts that there are.
+PoseLighting parts_by_masks(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+  return ready.parts ? lighting_by_part(*ready.parts, true, threads, monitor)
+                     : by_masks(ready, threads, monitor);
+}
+
 /// What goes between surfaces beside it, if the scenario asks for that.
 PoseLighting with_between(const SearchedLight &ready, PoseLighting direct,
                           std::shared_ptr<BetweenTable> FittedBetween::*table, unsigned threads,
@@ -171,17 +177,13 @@ PoseLighting whole_lighting(const SearchedLight &ready, unsigned threads, const 
 
 PoseLighting followed_lighting(const SearchedLight &ready, unsigned threads,
                                const Monitor &monitor) {
-  return with_between(ready,
-                      ready.parts ? lighting_by_part(*ready.parts, true, threads, monitor)
-                                  : by_masks(ready, threads, monitor),
-                      &FittedBetween::fine, threads, monitor);
+  return with_between(ready, parts_by_masks(ready, threads, monitor), &FittedBetween::fine, threads,
+                      monitor);
 }
 
 PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
-  return with_between(ready,
-                      ready.parts ? lighting_by_part(*ready.parts, true, threads, monitor)
-                                  : by_masks(ready, threads, monitor),
-                      &FittedBetween::coarse, threads, monitor);
+  return with_between(ready, parts_by_masks(ready, threads, monitor), &FittedBetween::coarse,
+                      threads, monitor);
 }
 
 PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {

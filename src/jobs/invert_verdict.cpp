@@ -2,6 +2,7 @@
 
 #include "jobs/curve_limits.h"
 #include "jobs/invert_tables.h"
+#include "jobs/verdict_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,14 +194,7 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
                      {"scale", mode.scale}});
   }
   out["modes"] = modes;
-  ordered_json turns = ordered_json::array();
-  for (const BodySymmetry &s : symmetries)
-    turns.push_back(s.text);
-  out["symmetries"] = turns;
-  const NullTest &u = judgement.null_test;
-  out["u_null_test"] = {{"chi2_gain", u.chi2_gain}, {"q0", u.q0},
-                        {"q0_sd", u.q0_sd},         {"u0", u.u0},
-                        {"u0_sd", u.u0_sd},         {"flagged", u.is_flagged()}};
+  put_symmetries_and_null_test(symmetries, judgement.null_test, out);
   ordered_json unknowns = ordered_json::array();
   const std::size_t first = judgement.nuisances.size() - judgement.fitted.size();
   for (std::size_t k = 0; k < judgement.nuisances.size(); ++k) {

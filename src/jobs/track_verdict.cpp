@@ -2,6 +2,7 @@
 
 #include "jobs/curve_limits.h"
 #include "jobs/track_tables.h"
+#include "jobs/verdict_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -141,14 +142,7 @@ std::string track_json(const TrackStart &now, const TrackHistory &history, const
   }
   out["modes"] = modes;
   out["events"] = history.events;
-  ordered_json turns = ordered_json::array();
-  for (const BodySymmetry &s : symmetries)
-    turns.push_back(s.text);
-  out["symmetries"] = turns;
-  const NullTest &u = judgement.null_test;
-  out["u_null_test"] = {{"chi2_gain", u.chi2_gain}, {"q0", u.q0},
-                        {"q0_sd", u.q0_sd},         {"u0", u.u0},
-                        {"u0_sd", u.u0_sd},         {"flagged", u.is_flagged()}};
+  put_symmetries_and_null_test(symmetries, judgement.null_test, out);
   out["notes"] = judgement.notes;
   return out.dump(1) + "\n";
 }

@@ -43,7 +43,7 @@ TrackMode turned_on(const TrackMode &mode, double seconds, double rate_noise);
 /// Why a bank no longer knows.
 enum class TrackLoss {
   None,   ///< it knows
-  Misfit, ///< no filter explains three measured epochs that follow each other
+  Misfit, ///< the heaviest explains none of three measured epochs that follow each other
   Open    ///< filters of 1 % and more are open to pi/sqrt(3) rad about some axis: all around
 };
 
