@@ -13,8 +13,8 @@ ARGUMENTS: dict[str, str] = {
     "efficiency_sd": PART, "exposure_s": "s", "false_alarm": PART, "floor": PART, "gain_sd": PART, "gap_s": "s", "haze_sd": PART,
     "height_m": "m", "knot_s": "s", "largest_floor": PART, "laser": PART, "lat_deg": "deg", "lon_deg": "deg", "longest_s": "s", "mag": _MAG,
     "mag_max": _MAG, "none_prior": PART, "outliers": PART, "period_s": "s", "phase_deg": "deg", "phi_deg": "deg",
-    "plate_sd_deg": "deg", "priors": PART, "q0_sd": PART, "reflectance_sd": PART, "retardance_sd_deg": "deg", "scale_sd": PART, "sd_p": PART,
-    "seeing_arcsec": "arcsec", "shortest_s": "s", "sky_mag": _SKY, "sky_p_sd": PART, "sky_sd": PART, "slope_sd": PART, "snr": PART,
+    "plate_sd_deg": "deg", "priors": PART, "q0_sd": PART, "rate_noise": "deg / s(3/2)", "rate_sd": "deg / s",
+    "reflectance_sd": PART, "retardance_sd_deg": "deg", "scale_sd": PART, "sd_p": PART, "seeing_arcsec": "arcsec", "shortest_s": "s", "sky_mag": _SKY, "sky_p_sd": PART, "sky_sd": PART, "slope_sd": PART, "snr": PART,
     "step": "s", "step_s": "s", "sun_alt_max_deg": "deg", "temperatures": "K", "theta_i_deg": "deg", "theta_o_deg": "deg", "time_sd_s": "s",
     "timeout_s": "s", "transparency_sd": PART, "transparency_time_s": "s", "wavelength_nm": "nm", "width_nm": "nm",
     "zero_point_sd": PART, "zero_sd_mag": _MAG}

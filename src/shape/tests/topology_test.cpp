@@ -161,7 +161,7 @@ TEST(Shapes, SpheresOfAnySizeAreConvex) {
 TEST(Shapes, HstHasItsPublishedSizes) {
   const MeshReport r = inspect(make_hst());
   const Mesh mesh = make_hst();
-  EXPECT_EQ(mesh.groups.size(), 10u);
+  EXPECT_EQ(mesh.groups.size(), 11u);
   const auto front = std::find(mesh.groups.begin(), mesh.groups.end(), "array_front");
   ASSERT_NE(front, mesh.groups.end()); // 2 wings of 2.5 m x 12.1 m
   EXPECT_NEAR(r.group_area_m2[static_cast<std::size_t>(front - mesh.groups.begin())],
