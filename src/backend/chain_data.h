@@ -65,6 +65,7 @@ struct ChainData {
   View<const ChainSurface> surfaces; ///< [kind * bands + band]
   ChainMasks masks;
   std::size_t bands = 0;
+  View<const float> transmitted; ///< of I, [block * lanes + lane]: for weigh_chains alone
 };
 
 /// A pose as chains see it.
@@ -125,5 +126,11 @@ inline constexpr std::size_t chain_bands_max = 8; ///< more go in parts
 /// them from number `begin` of the run on, in bands from `band` on, chain_bands_max at most.
 void sum_chains(const ChainData &data, const ChainRun &run, std::size_t begin, std::size_t blocks,
                 std::size_t band, const ChainPose &pose, ChainSums &out);
+
+/// What each chain of some blocks of a run would carry in the first band if nothing were in the way
+/// of its ends, both ways together and roughly (as of light without polarization): [block * lanes +
+/// lane], 0 only where it carries nothing.
+void weigh_chains(const ChainData &data, const ChainRun &run, std::size_t begin, std::size_t blocks,
+                  const ChainPose &pose, float *out);
 
 } // namespace umov::backend

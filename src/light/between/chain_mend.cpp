@@ -20,23 +20,7 @@ constexpr double sure = 0.99999;
 /// apart.
 constexpr double golden = 0.6180339887498949;
 
-Occluder::Point point_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
-
 } // namespace
-
-bool ChainLevel::is_free(const OneChain &one, const backend::ChainPose &pose) const {
-  const auto &seen = one.is_reversed ? point_q_ : point_p_,
-             &lit = one.is_reversed ? point_p_ : point_q_;
-  const Occluder::Point from[2] = {seen[one.at()], lit[one.at()]},
-                        to[2] = {point_of(pose.observer), point_of(pose.sun)};
-  for (std::size_t k = 0; k < 2; ++k) {
-    unsigned char free = 0;
-    occluder_.is_free(std::span(&from[k], 1), std::span(&to[k], 1), std::span(&free, 1));
-    if (free == 0)
-      return false;
-  }
-  return true;
-}
 
 void ChainLevel::set_thresholds(std::uint64_t seed, std::size_t first) {
   constexpr std::uint32_t doubt_stream = 0xC4B0;

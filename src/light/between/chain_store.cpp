@@ -12,17 +12,36 @@ namespace {
 constexpr std::array<std::size_t, ChainStore::levels> chains_of{16'384, 49'152, 196'608};
 /// Rays for each chain that stays: most meet nothing, or do not matter.
 constexpr std::size_t rays_per_chain = 24;
+/// Chains of the reserve, and rays for each of them: it is for light that few chains meet, of which
+/// none is to be thinned away.
+constexpr std::size_t reserve_chains = 1'048'576, reserve_rays_per_chain = 6;
 /// Poses that are lit in turn by the chains that the cache has.
 constexpr std::size_t poses_together = 16;
 /// Fewer chains than this, counted by their light, (sum I)^2 / sum I^2, are too few to tell how far
 /// off they are.
 constexpr double least_chains = 48;
+/// Of the reserve, where none carries much more than another: those that would are taken for sure.
+constexpr double least_of_reserve = 12;
 
 /// How well chains in doubt are settled: to a part of the standard error that the replicates have
 /// anyway, or of that wanted.
 constexpr double mended_to = 0.5;
 
 constexpr double weight_of(std::size_t level) { return static_cast<double>(chains_of[level]); }
+constexpr double all_weights = weight_of(0) + weight_of(1) + weight_of(2);
+
+/// Of a level, or, after the last of them, of the reserve.
+ChainCount count_of(std::size_t level) {
+  const auto rays_of = [](std::size_t k) {
+    return (k < ChainStore::levels ? chains_of[k] * rays_per_chain
+                                   : reserve_chains * reserve_rays_per_chain) /
+           replicates;
+  };
+  ChainCount out{0, rays_of(level), level < ChainStore::levels ? chains_of[level] : reserve_chains};
+  for (std::size_t k = 0; k < level; ++k)
+    out.first += rays_of(k);
+  return out;
+}
 
 /// What is left of the error of visibility, in parts of the light: where the directions of a grid
 /// agree about what lies between them, and are wrong. At least this much, since few are asked
@@ -79,17 +98,25 @@ const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
                                     const std::atomic<bool> *cancel) const {
   const WriteLock lock(mutex_);
   if (!level_[index]) {
-    std::size_t first = 0;
-    for (std::size_t k = 0; k < index; ++k)
-      first += chains_of[k] * rays_per_chain / replicates;
-    auto made = std::make_unique<const ChainLevel>(
-        rays_, surfaces_, occluder_, grids_, bands_, first,
-        chains_of[index] * rays_per_chain / replicates, chains_of[index], seed_, threads, cancel);
+    auto made = std::make_unique<const ChainLevel>(rays_, surfaces_, occluder_, grids_, bands_,
+                                                   count_of(index), seed_, threads, cancel);
     if (is_stopped(cancel))
       return nullptr; // whoever asks next begins anew
     level_[index] = std::move(made);
   }
   return level_[index].get();
+}
+
+const ChainReserve *ChainStore::reserve(unsigned threads, const std::atomic<bool> *cancel) const {
+  const WriteLock lock(mutex_);
+  if (!reserve_) {
+    auto made = std::make_unique<const ChainReserve>(rays_, surfaces_, occluder_, bands_,
+                                                     count_of(levels), seed_, threads, cancel);
+    if (is_stopped(cancel))
+      return nullptr;
+    reserve_ = std::move(made);
+  }
+  return reserve_.get();
 }
 
 void ChainStore::add_level(std::size_t index, std::span<const Pose> poses,
@@ -140,12 +167,67 @@ void ChainStore::add_level(std::size_t index, std::span<const Pose> poses,
   });
 }
 
+void ChainStore::ask_reserve(std::span<const Pose> poses, std::span<const double> direct_i,
+                             const IntegrationOptions &options, Answer &answer, unsigned threads,
+                             const std::atomic<bool> *cancel) const {
+  std::vector<std::size_t> few;
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    if (answer.is_enough[k] == 0)
+      few.push_back(k);
+  const ChainReserve *from = few.empty() ? nullptr : reserve(threads, cancel);
+  if (from == nullptr)
+    return;
+  parallel_for((few.size() + poses_together - 1) / poses_together, threads, [&](std::size_t group) {
+    if (is_stopped(cancel))
+      return;
+    const std::size_t begin = group * poses_together,
+                      count = std::min(poses_together, few.size() - begin);
+    std::vector<backend::ChainPose> at;
+    std::vector<double> beside;
+    std::vector<backend::ChainLight> light(count * bands_);
+    std::vector<backend::ChainSums> sums(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      at.push_back(chain_pose(poses[few[begin + k]]));
+      beside.push_back(direct_i[few[begin + k] * bands_]);
+      sums[k].bands = {light.data() + k * bands_, bands_};
+    }
+    from->add(at, beside, options.accuracy, sums);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t pose = few[begin + k];
+      const double total = total_of(sums[k].bands[0]);
+      // What levels met is not mixed in: that they met few is a choice by what they met.
+      answer.light[pose].bands.resize(bands_);
+      for (std::size_t b = 0; b < bands_; ++b)
+        answer.light[pose].bands[b] = result_of(sums[k].bands[b], 1, 0);
+      answer.is_enough[pose] = total * total >= least_of_reserve * sums[k].squares ? 1 : 0;
+    }
+  });
+}
+
 ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<const double> direct_i,
                                      const IntegrationOptions &options, unsigned threads,
                                      const std::atomic<bool> *cancel) const {
   Answer out;
   out.light.resize(poses.size());
   out.is_enough.assign(poses.size(), 1);
+  if (surfaces_.are_narrow())
+    out.is_enough.assign(poses.size(), 0);
+  else
+    climb(poses, direct_i, options, out, threads, cancel);
+  if (static_cast<double>(options.max_points) >= all_weights && surfaces_.are_fast())
+    ask_reserve(poses, direct_i, options, out, threads, cancel);
+  if (is_stopped(cancel))
+    return {};
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    if (!has_scattering_plane(poses[k]))
+      for (BandResult &band : out.light[k].bands)
+        band.stokes.q = band.stokes.u = band.half_width.q = band.half_width.u = 0;
+  return out;
+}
+
+void ChainStore::climb(std::span<const Pose> poses, std::span<const double> direct_i,
+                       const IntegrationOptions &options, Answer &out, unsigned threads,
+                       const std::atomic<bool> *cancel) const {
   Climb climb;
   climb.sum.resize(poses.size() * bands_);
   climb.squares.resize(poses.size());
@@ -158,7 +240,7 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
       break;
     add_level(index, poses, direct_i, options, climb, threads, cancel);
     if (is_stopped(cancel))
-      return {};
+      return;
     weight += weight_of(index);
     std::vector<std::size_t> left;
     for (const std::size_t k : climb.open) {
@@ -181,11 +263,6 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
     }
     climb.open = std::move(left);
   }
-  for (std::size_t k = 0; k < poses.size(); ++k)
-    if (!has_scattering_plane(poses[k]))
-      for (BandResult &band : out.light[k].bands)
-        band.stokes.q = band.stokes.u = band.half_width.q = band.half_width.u = 0;
-  return out;
 }
 
 } // namespace umov

@@ -2,6 +2,7 @@
 // Private: light between surfaces for many poses, from chains that are drawn once.
 
 #include "light/between/chain_level.h"
+#include "light/between/chain_reserve.h"
 
 #include <atomic>
 #include <memory>
@@ -26,7 +27,8 @@ public:
     std::vector<char> is_enough; ///< per pose: enough chains were met to believe the half-widths
   };
   /// Each pose climbs until the half-width of I is below options.accuracy of the whole, direct_i
-  /// included, or the levels end, or options.max_points chains are spent. Empty if `cancel` became
+  /// included, or the levels end, or options.max_points chains are spent. Where all levels met too
+  /// few, and for bodies of narrow lobes alone, the reserve is asked. Empty if `cancel` became
   /// true.
   [[nodiscard]] Answer light(std::span<const Pose> poses, std::span<const double> direct_i,
                              const IntegrationOptions &options, unsigned threads,
@@ -43,6 +45,14 @@ private:
                  const IntegrationOptions &options, Climb &climb, unsigned threads,
                  const std::atomic<bool> *cancel) const;
 
+  void climb(std::span<const Pose> poses, std::span<const double> direct_i,
+             const IntegrationOptions &options, Answer &answer, unsigned threads,
+             const std::atomic<bool> *cancel) const;
+  const ChainReserve *reserve(unsigned threads, const std::atomic<bool> *cancel) const;
+  void ask_reserve(std::span<const Pose> poses, std::span<const double> direct_i,
+                   const IntegrationOptions &options, Answer &answer, unsigned threads,
+                   const std::atomic<bool> *cancel) const;
+
   ChainSurfaces surfaces_;
   ChainRays rays_;
   const Occluder &occluder_;
@@ -51,6 +61,7 @@ private:
   std::uint64_t seed_;
   mutable Mutex mutex_;
   mutable std::array<std::unique_ptr<const ChainLevel>, levels> level_;
+  mutable std::unique_ptr<const ChainReserve> reserve_;
 };
 
 } // namespace umov

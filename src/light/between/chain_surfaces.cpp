@@ -19,6 +19,9 @@ constexpr double least_widths = 0.0049;
 /// A lobe narrower than this (GGX of alpha 0.07) is met by too few chains whatever stands at the
 /// other end, and a pose that has many others would not notice; a path begun on it meets it always.
 constexpr double least_width = 0.05;
+/// Where all lobes are narrower than this (GGX of alpha 0.14), few of the chains that levels keep
+/// carry anything to a pose, and some of those much: their spread tells too little.
+constexpr double wide = 0.1;
 /// What a polynomial may miss, in parts of the largest value.
 constexpr double fit_error = 5e-4;
 constexpr std::size_t cosines = 32;
@@ -143,6 +146,9 @@ ChainSurfaces::ChainSurfaces(const Scene &scene) {
       needs_paths_ = needs_paths_ || part(a, b) != ChainPart::Whole;
       has_any_ = has_any_ || part(a, b) != ChainPart::Nothing;
     }
+  are_narrow_ = std::none_of(surface_.begin(), surface_.end(), [](const Surface *surface) {
+    return surface->has_diffuse() || surface->width() >= wide;
+  });
   tabulate_strength(bands);
 }
 

@@ -1,0 +1,109 @@
+// What chains would carry if nothing were in the way of their ends, for each instruction set.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "backend/simd/chain_weights_simd.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target comes first: it includes this file once for each instruction set.
+#include "backend/simd/lanes.inl.h"
+
+#include "backend/chain_data.h"
+#include "kernel/chain_end.inl.h"
+
+#include "kernel/begin.h"
+
+/// f (n.e) of one end, and the lobe's part of it; n.e above 0.
+struct EndStrength {
+  Lanes whole, lobe;
+};
+
+HWY_INLINE EndStrength strength_of(const backend::ChainSurface &surface,
+                                   const ChainEndAt<Lanes> &at) {
+  const Lanes nothing(0.0f);
+  EndStrength out{nothing, nothing};
+  if (surface.has_lobe)
+    out.lobe = chain_lobe(surface.lobe, at) *
+               max(bent_polynomial(surface.a, bent(at.half, surface.bend)), nothing);
+  for (std::uint32_t k = 0; k < surface.products; ++k) {
+    const auto &p = surface.product[k];
+    out.whole = out.whole + Lanes(p.factor) * at.n_e *
+                                bent_polynomial(p.profile, bent(at.n_e, p.bend)) *
+                                bent_polynomial(p.profile, bent(at.n_w, p.bend));
+  }
+  out.whole = max(out.whole, nothing) + out.lobe;
+  return out;
+}
+
+/// One run of chains and one pose.
+struct ChainWeights {
+  const backend::ChainSurface &p, &q; ///< in the first band
+  bool is_without_lobes;
+  Triple<Lanes> sun, observer;
+
+  struct End {
+    Triple<Lanes> normal, along;
+    HWY_INLINE End(const backend::ChainEnds &of, std::size_t s)
+        : normal(axes(of.normal, s)), along(axes(of.along, s)) {}
+    static HWY_INLINE Triple<Lanes> axes(const float (&v)[3][backend::lanes], std::size_t s) {
+      const FloatTag d;
+      return {hn::Load(d, v[0] + s), hn::Load(d, v[1] + s), hn::Load(d, v[2] + s)};
+    }
+  };
+  /// Seen at one end and lit at the other.
+  HWY_INLINE Lanes one_way(const backend::ChainSurface &seen, const End &at_seen,
+                           const backend::ChainSurface &lit, const End &at_lit) const {
+    const Lanes nothing(0.0f);
+    const auto a = chain_end_at(at_seen.normal, at_seen.along, observer),
+               b = chain_end_at(at_lit.normal, at_lit.along, sun);
+    const LaneMask counts = (a.n_e > nothing) & (b.n_e > nothing);
+    if (!any(counts))
+      return nothing;
+    const EndStrength x = strength_of(seen, a), y = strength_of(lit, b);
+    const Lanes all = x.whole * y.whole;
+    return select(counts, is_without_lobes ? max(all - x.lobe * y.lobe, nothing) : all, nothing);
+  }
+  HWY_INLINE void put(const backend::ChainBlock &at, const float *transmitted, float *out) const {
+    const FloatTag d;
+    for (std::size_t s = 0; s < backend::lanes; s += hn::Lanes(d)) {
+      const End end_p(at.p, s), end_q(at.q, s);
+      // Weights of both ways alike, so that Sun and observer exchanged choose the same chains.
+      const Lanes weight = Lanes(0.5f) * (Lanes(hn::Load(d, at.from_p + s)) +
+                                          Lanes(hn::Load(d, at.from_q + s)));
+      const Lanes ways = one_way(p, end_p, q, end_q) + one_way(q, end_q, p, end_p);
+      hn::StoreU((weight * ways * Lanes(hn::LoadU(d, transmitted + s))).v, d, out + s);
+    }
+  }
+};
+
+void weigh_chains_here(const backend::ChainData &data, const backend::ChainRun &run,
+                       std::size_t begin, std::size_t blocks, const backend::ChainPose &pose,
+                       float *out) {
+  const auto everywhere = [](const float *v) HWY_ATTR {
+    return Triple<Lanes>{Lanes(v[0]), Lanes(v[1]), Lanes(v[2])};
+  };
+  const ChainWeights weights{data.surfaces[run.kind_p * data.bands],
+                             data.surfaces[run.kind_q * data.bands], run.is_without_lobes,
+                             everywhere(pose.sun), everywhere(pose.observer)};
+  for (std::size_t k = 0; k < blocks; ++k) {
+    const std::size_t block = run.first + begin + k;
+    weights.put(data.blocks[block], &data.transmitted[block * backend::lanes],
+                out + k * backend::lanes);
+  }
+}
+
+#include "kernel/end.h"
+
+#if HWY_ONCE
+namespace umov::kernel {
+HWY_EXPORT(weigh_chains_here);
+} // namespace umov::kernel
+
+namespace umov::backend {
+
+void weigh_chains(const ChainData &data, const ChainRun &run, std::size_t begin, std::size_t blocks,
+                  const ChainPose &pose, float *out) {
+  using namespace kernel; // the table of HWY_EXPORT stands there
+  HWY_DYNAMIC_DISPATCH(weigh_chains_here)(data, run, begin, blocks, pose, out);
+}
+
+} // namespace umov::backend
+#endif

@@ -1,0 +1,116 @@
+#include "light/between/chain_reserve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <umov/core/random.h>
+#include <umov/core/stop.h>
+
+namespace umov {
+namespace {
+
+constexpr std::uint32_t pick_stream = 0xC4D0;
+constexpr std::size_t blocks_of_piece = 64;
+/// How many chains a pose settles by rays.
+constexpr double least_picks = 512, most_picks = 8192;
+
+/// How many tell the whole light to the accuracy asked, if half of what all would carry passes.
+double picks_for(double direct_i, double all, double accuracy) {
+  const double share = all > 0 ? all / 2 / (direct_i + all / 2) : 0;
+  return std::clamp(std::pow(student_of_replicates * share / accuracy, 2), least_picks, most_picks);
+}
+
+} // namespace
+
+ChainReserve::ChainReserve(const ChainRays &rays, const ChainSurfaces &surfaces,
+                           const Occluder &occluder, std::size_t bands, const ChainCount &count,
+                           std::uint64_t seed, unsigned threads, const std::atomic<bool> *cancel)
+    : ChainSet(surfaces, occluder, bands) {
+  const Drawn drawn = draw(rays, count, threads, cancel);
+  if (is_stopped(cancel))
+    return;
+  transmitted_.assign(blocks_ * replicates, 0);
+  for (const Placed &one : drawn.placed)
+    transmitted_[one.block * replicates + one.lane] = static_cast<float>(one.chain->transmitted);
+  for (std::uint32_t run = 0; run < runs_.size(); ++run)
+    for (std::uint32_t first = 0; first < runs_[run].count; first += blocks_of_piece)
+      pieces_.push_back(
+          {run, first, std::min<std::uint32_t>(blocks_of_piece, runs_[run].count - first)});
+  for (std::size_t r = 0; r < replicates; ++r)
+    shift_[r] = uniform4(seed, pick_stream, r)[0];
+  view_ = {block_, matrix_, surfaces_.fast(), {}, bands_, transmitted_};
+}
+
+void ChainReserve::weigh(const Piece &piece, const backend::ChainPose &pose, Weights &out) const {
+  backend::weigh_chains(view_, runs_[piece.run], piece.first, piece.count, pose, out.data());
+}
+
+void ChainReserve::add(std::span<const backend::ChainPose> poses,
+                       std::span<const double> direct_i, double accuracy,
+                       std::span<backend::ChainSums> sums) const {
+  using Lanes = std::array<double, replicates>;
+  std::vector<Lanes> sum(pieces_.size() * poses.size());
+  std::vector<Way> ways(poses.size());
+  Weights weights;
+  // Piece by piece for all poses, while the cache has it.
+  for (std::size_t p = 0; p < pieces_.size(); ++p)
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      weigh(pieces_[p], poses[k], weights);
+      Lanes &to = sum[p * poses.size() + k];
+      for (std::size_t at = 0; at < pieces_[p].count * replicates; ++at)
+        to[at % replicates] += static_cast<double>(weights[at]);
+      for (std::size_t r = 0; r < replicates; ++r)
+        ways[k].step[r] += to[r];
+    }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    Way &way = ways[k];
+    const double all = std::accumulate(way.step.begin(), way.step.end(), 0.0) / replicates,
+                 picks = picks_for(direct_i[k], all, accuracy);
+    for (std::size_t r = 0; r < replicates; ++r) {
+      way.step[r] *= replicates / picks;
+      way.next[r] = shift_[r] * way.step[r];
+    }
+  }
+  for (std::size_t p = 0; p < pieces_.size(); ++p)
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      const Lanes &more = sum[p * poses.size() + k];
+      Way &way = ways[k];
+      Lanes end;
+      bool is_any = false;
+      for (std::size_t r = 0; r < replicates; ++r) {
+        end[r] = way.passed[r] + more[r];
+        is_any = is_any || way.next[r] < end[r];
+      }
+      if (is_any) {
+        weigh(pieces_[p], poses[k], weights);
+        pick(pieces_[p], weights, poses[k], way, sums[k]);
+      }
+      way.passed = end;
+    }
+}
+
+void ChainReserve::pick(const Piece &piece, const Weights &weights, const backend::ChainPose &pose,
+                        Way &way, backend::ChainSums &sums) const {
+  for (std::size_t k = 0; k < piece.count; ++k)
+    for (std::size_t r = 0; r < replicates; ++r) {
+      const auto weight = static_cast<double>(weights[k * replicates + r]);
+      way.passed[r] += weight;
+      std::size_t times = 0;
+      for (; weight > 0 && way.next[r] < way.passed[r]; way.next[r] += way.step[r])
+        ++times;
+      if (times > 0)
+        settle(runs_[piece.run].first + piece.first + k, r,
+               static_cast<double>(times) * way.step[r] / weight, pose, sums);
+    }
+}
+
+void ChainReserve::settle(std::size_t block, std::size_t lane, double times,
+                          const backend::ChainPose &pose, backend::ChainSums &sums) const {
+  for (const bool is_reversed : {false, true}) {
+    const OneChain one{run_at(block), block, lane, is_reversed};
+    if (faces(one, pose) && is_free(one, pose))
+      add_one(one, times, pose, sums);
+  }
+}
+
+} // namespace umov

@@ -1,0 +1,46 @@
+#pragma once
+// Private: many chains, of which a pose takes those that matter to it.
+
+#include "light/between/chain_set.h"
+
+namespace umov {
+
+/// Chains for light that few of them meet: from one lobe to another, both fairly narrow. Nothing is
+/// known of where their ends are free; a pose draws from them, each as likely as it would carry if
+/// nothing were in the way, and settles those by rays. Thread safe.
+class ChainReserve : public ChainSet {
+public:
+  /// Of surfaces that the vector unit computes. Of no use once `cancel`, which may be null, became
+  /// true.
+  ChainReserve(const ChainRays &rays, const ChainSurfaces &surfaces, const Occluder &occluder,
+               std::size_t bands, const ChainCount &count, std::uint64_t seed, unsigned threads,
+               const std::atomic<bool> *cancel);
+
+  /// Adds what all of them carry in all bands, told from as many of them as tell the whole light,
+  /// with direct_i of each pose in the first band, to about `accuracy`, if there are any.
+  void add(std::span<const backend::ChainPose> poses, std::span<const double> direct_i,
+           double accuracy, std::span<backend::ChainSums> sums) const;
+
+private:
+  /// Neighbouring blocks of one run.
+  struct Piece {
+    std::uint32_t run = 0, first = 0, count = 0; ///< first: counted in the run
+  };
+  /// What all chains would carry, up to a place in their order, and the next pick, by lanes.
+  struct Way {
+    std::array<double, replicates> passed{}, next{}, step{};
+  };
+  using Weights = std::array<float, 64 * replicates>;
+  void weigh(const Piece &piece, const backend::ChainPose &pose, Weights &out) const;
+  void pick(const Piece &piece, const Weights &weights, const backend::ChainPose &pose, Way &way,
+            backend::ChainSums &sums) const;
+  void settle(std::size_t block, std::size_t lane, double times, const backend::ChainPose &pose,
+              backend::ChainSums &sums) const;
+
+  std::vector<Piece> pieces_;
+  std::vector<float> transmitted_; ///< of I, [block * 16 + lane]
+  std::array<double, replicates> shift_{};
+  backend::ChainData view_;
+};
+
+} // namespace umov
