@@ -66,8 +66,8 @@ struct ChainWeights {
     for (std::size_t s = 0; s < backend::lanes; s += hn::Lanes(d)) {
       const End end_p(at.p, s), end_q(at.q, s);
       // Weights of both ways alike, so that Sun and observer exchanged choose the same chains.
-      const Lanes weight = Lanes(0.5f) * (Lanes(hn::Load(d, at.from_p + s)) +
-                                          Lanes(hn::Load(d, at.from_q + s)));
+      const Lanes weight =
+          Lanes(0.5f) * (Lanes(hn::Load(d, at.from_p + s)) + Lanes(hn::Load(d, at.from_q + s)));
       const Lanes ways = one_way(p, end_p, q, end_q) + one_way(q, end_q, p, end_p);
       hn::StoreU((weight * ways * Lanes(hn::LoadU(d, transmitted + s))).v, d, out + s);
     }

@@ -86,7 +86,7 @@ ChainLevel::ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces,
     return;
   set_thresholds(seed, count.first);
   trace(drawn.placed, grids, threads, cancel);
-  view_ = {block_, matrix_, surfaces_.fast(), {blocks_, free_p_, free_q_}, bands_};
+  view_ = {block_, matrix_, surfaces_.fast(), {blocks_, free_p_, free_q_}, bands_, {}};
 }
 
 void ChainLevel::trace(const std::vector<Placed> &placed, const Occluder &grids, unsigned threads,

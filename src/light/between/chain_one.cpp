@@ -96,7 +96,7 @@ bool ChainSet::faces(const OneChain &one, const backend::ChainPose &pose) const 
 }
 
 void ChainSet::add_one(const OneChain &one, double free, const backend::ChainPose &pose,
-                         backend::ChainSums &sums) const {
+                       backend::ChainSums &sums) const {
   const Vec3<Body> sun = vector_of(pose.sun), observer = vector_of(pose.observer);
   const backend::ChainBlock &at = block_[one.block];
   const auto end = [&](bool is_q) {

@@ -45,9 +45,8 @@ void ChainReserve::weigh(const Piece &piece, const backend::ChainPose &pose, Wei
   backend::weigh_chains(view_, runs_[piece.run], piece.first, piece.count, pose, out.data());
 }
 
-void ChainReserve::add(std::span<const backend::ChainPose> poses,
-                       std::span<const double> direct_i, double accuracy,
-                       std::span<backend::ChainSums> sums) const {
+void ChainReserve::add(std::span<const backend::ChainPose> poses, std::span<const double> direct_i,
+                       double accuracy, std::span<backend::ChainSums> sums) const {
   using Lanes = std::array<double, replicates>;
   std::vector<Lanes> sum(pieces_.size() * poses.size());
   std::vector<Way> ways(poses.size());
