@@ -81,6 +81,7 @@ public:
   [[nodiscard]] const std::vector<TrackMode> &modes() const { return modes_; }
   /// Why it no longer knows; what it makes of later epochs is nothing.
   [[nodiscard]] TrackLoss loss() const { return loss_; }
+  /// What it keeps from step to step.
   [[nodiscard]] const TrackMemory &memory() const { return memory_; }
   /// Goes on from where a bank of these modes had been.
   void set_memory(const TrackMemory &memory) { memory_ = memory; }
