@@ -20,6 +20,7 @@ Quaternion upper(Quaternion q) { return q.w < 0 ? Quaternion{-q.w, -q.x, -q.y, -
 /// Columns qw to qz of attitudes.
 template <class Rows, class Take> void add_attitudes(Table &table, const Rows &rows, Take take) {
   std::vector<Quaternion> attitudes;
+  attitudes.reserve(rows.size());
   for (const auto &row : rows)
     attitudes.push_back(take(row));
   add_attitude_columns(
