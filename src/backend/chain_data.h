@@ -7,6 +7,8 @@
 namespace umov::backend {
 
 inline constexpr std::size_t chain_products_max = 3;
+/// What a polynomial of a surface may miss, in parts of its largest value.
+inline constexpr double chain_fit_error = 5e-4;
 
 /// One product of diffuse light: factor p(n.l) p(n.v), polynomials in t = 2 (1 + bend) c/(c + bend)
 /// - 1.
@@ -94,6 +96,8 @@ struct ChainSums {
   View<ChainNote> notes;
   std::size_t noted = 0;
   double doubt = 0, carried = 0; ///< sums over the notes
+  /// Of chains between two fairly narrow lobes: I in the first band, and its squares.
+  double narrow_i = 0, narrow_squares = 0;
 };
 /// The largest and the sum of 16 numbers, none below 0: four side by side.
 struct LaneSummary {
@@ -127,9 +131,9 @@ inline constexpr std::size_t chain_bands_max = 8; ///< more go in parts
 void sum_chains(const ChainData &data, const ChainRun &run, std::size_t begin, std::size_t blocks,
                 std::size_t band, const ChainPose &pose, ChainSums &out);
 
-/// What each chain of some blocks of a run would carry in the first band if nothing were in the way
-/// of its ends, both ways together and roughly (as of light without polarization): [block * lanes +
-/// lane], 0 only where it carries nothing.
+/// What each chain of some blocks of a run would carry in the mean of all bands if nothing were in
+/// the way of its ends, both ways together and roughly (as of light without polarization): [block *
+/// lanes + lane], 0 only where it carries nothing.
 void weigh_chains(const ChainData &data, const ChainRun &run, std::size_t begin, std::size_t blocks,
                   const ChainPose &pose, float *out);
 

@@ -11,31 +11,32 @@
 
 #include "kernel/begin.h"
 
-/// f (n.e) of one end, and the lobe's part of it; n.e above 0.
+/// f (n.e) of one end by its lobe and by the rest, n.e above 0. A polynomial that its error takes
+/// below 0 must leave something: what weighs nothing is never drawn.
 struct EndStrength {
-  Lanes whole, lobe;
+  Lanes lobe, rest;
 };
 
-HWY_INLINE EndStrength strength_of(const backend::ChainSurface &surface,
+HWY_INLINE EndStrength strength_of(const backend::ChainSurface &surface, Lanes lobe,
                                    const ChainEndAt<Lanes> &at) {
-  const Lanes nothing(0.0f);
+  const Lanes nothing(0.0f), least(backend::chain_fit_error);
   EndStrength out{nothing, nothing};
   if (surface.has_lobe)
-    out.lobe = chain_lobe(surface.lobe, at) *
-               max(bent_polynomial(surface.a, bent(at.half, surface.bend)), nothing);
+    out.lobe = lobe * max(bent_polynomial(surface.a, bent(at.half, surface.bend)), least);
   for (std::uint32_t k = 0; k < surface.products; ++k) {
     const auto &p = surface.product[k];
-    out.whole = out.whole + Lanes(p.factor) * at.n_e *
-                                bent_polynomial(p.profile, bent(at.n_e, p.bend)) *
-                                bent_polynomial(p.profile, bent(at.n_w, p.bend));
+    out.rest = out.rest + Lanes(p.factor) * at.n_e *
+                              max(bent_polynomial(p.profile, bent(at.n_e, p.bend)), least) *
+                              max(bent_polynomial(p.profile, bent(at.n_w, p.bend)), least);
   }
-  out.whole = max(out.whole, nothing) + out.lobe;
+  out.rest = max(out.rest, nothing);
   return out;
 }
 
 /// One run of chains and one pose.
 struct ChainWeights {
-  const backend::ChainSurface &p, &q; ///< in the first band
+  const backend::ChainSurface *p, *q; ///< of all bands
+  std::size_t bands;
   bool is_without_lobes;
   Triple<Lanes> sun, observer;
 
@@ -48,18 +49,27 @@ struct ChainWeights {
       return {hn::Load(d, v[0] + s), hn::Load(d, v[1] + s), hn::Load(d, v[2] + s)};
     }
   };
-  /// Seen at one end and lit at the other.
-  HWY_INLINE Lanes one_way(const backend::ChainSurface &seen, const End &at_seen,
-                           const backend::ChainSurface &lit, const End &at_lit) const {
+  /// Seen at one end and lit at the other, summed over the bands.
+  HWY_INLINE Lanes one_way(const backend::ChainSurface *seen, const End &at_seen,
+                           const backend::ChainSurface *lit, const End &at_lit) const {
     const Lanes nothing(0.0f);
     const auto a = chain_end_at(at_seen.normal, at_seen.along, observer),
                b = chain_end_at(at_lit.normal, at_lit.along, sun);
     const LaneMask counts = (a.n_e > nothing) & (b.n_e > nothing);
     if (!any(counts))
       return nothing;
-    const EndStrength x = strength_of(seen, a), y = strength_of(lit, b);
-    const Lanes all = x.whole * y.whole;
-    return select(counts, is_without_lobes ? max(all - x.lobe * y.lobe, nothing) : all, nothing);
+    Lanes sum = nothing, lobe_a = nothing, lobe_b = nothing;
+    for (std::size_t band = 0; band < bands; ++band) {
+      if (seen[band].has_lobe && (band == 0 || !seen[band].is_lobe_of_first))
+        lobe_a = chain_lobe(seen[band].lobe, a);
+      if (lit[band].has_lobe && (band == 0 || !lit[band].is_lobe_of_first))
+        lobe_b = chain_lobe(lit[band].lobe, b);
+      const EndStrength x = strength_of(seen[band], lobe_a, a),
+                        y = strength_of(lit[band], lobe_b, b);
+      const Lanes but_lobes = (x.lobe + x.rest) * y.rest + x.rest * y.lobe;
+      sum = sum + (is_without_lobes ? but_lobes : but_lobes + x.lobe * y.lobe);
+    }
+    return select(counts, sum, nothing);
   }
   HWY_INLINE void put(const backend::ChainBlock &at, const float *transmitted, float *out) const {
     const FloatTag d;
@@ -80,9 +90,12 @@ void weigh_chains_here(const backend::ChainData &data, const backend::ChainRun &
   const auto everywhere = [](const float *v) HWY_ATTR {
     return Triple<Lanes>{Lanes(v[0]), Lanes(v[1]), Lanes(v[2])};
   };
-  const ChainWeights weights{data.surfaces[run.kind_p * data.bands],
-                             data.surfaces[run.kind_q * data.bands], run.is_without_lobes,
-                             everywhere(pose.sun), everywhere(pose.observer)};
+  const ChainWeights weights{&data.surfaces[run.kind_p * data.bands],
+                             &data.surfaces[run.kind_q * data.bands],
+                             data.bands,
+                             run.is_without_lobes,
+                             everywhere(pose.sun),
+                             everywhere(pose.observer)};
   for (std::size_t k = 0; k < blocks; ++k) {
     const std::size_t block = run.first + begin + k;
     weights.put(data.blocks[block], &data.transmitted[block * backend::lanes],

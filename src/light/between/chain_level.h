@@ -28,6 +28,8 @@ public:
 private:
   void trace(const std::vector<Placed> &placed, const Occluder &grids, unsigned threads,
              const std::atomic<bool> *cancel);
+  void add_run(std::size_t number, std::span<const backend::ChainPose> poses,
+               std::span<backend::ChainSums> sums) const;
   void add_general(const backend::ChainRun &run, const backend::ChainPose &pose,
                    backend::ChainSums &sums) const;
   /// As often as its grids say, with the doubt in that.

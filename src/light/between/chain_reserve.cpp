@@ -45,11 +45,13 @@ void ChainReserve::weigh(const Piece &piece, const backend::ChainPose &pose, Wei
   backend::weigh_chains(view_, runs_[piece.run], piece.first, piece.count, pose, out.data());
 }
 
-void ChainReserve::add(std::span<const backend::ChainPose> poses, std::span<const double> direct_i,
-                       double accuracy, std::span<backend::ChainSums> sums) const {
+std::vector<ChainReserve::Told> ChainReserve::add(std::span<const backend::ChainPose> poses,
+                                                  std::span<const double> direct_i, double accuracy,
+                                                  std::span<backend::ChainSums> sums) const {
   using Lanes = std::array<double, replicates>;
   std::vector<Lanes> sum(pieces_.size() * poses.size());
   std::vector<Way> ways(poses.size());
+  std::vector<Told> out(poses.size());
   Weights weights;
   // Piece by piece for all poses, while the cache has it.
   for (std::size_t p = 0; p < pieces_.size(); ++p)
@@ -65,6 +67,7 @@ void ChainReserve::add(std::span<const backend::ChainPose> poses, std::span<cons
     Way &way = ways[k];
     const double all = std::accumulate(way.step.begin(), way.step.end(), 0.0) / replicates,
                  picks = picks_for(direct_i[k], all, accuracy);
+    out[k] = {all, static_cast<std::size_t>(picks)};
     for (std::size_t r = 0; r < replicates; ++r) {
       way.step[r] *= replicates / picks;
       way.next[r] = shift_[r] * way.step[r];
@@ -86,6 +89,7 @@ void ChainReserve::add(std::span<const backend::ChainPose> poses, std::span<cons
       }
       way.passed = end;
     }
+  return out;
 }
 
 void ChainReserve::pick(const Piece &piece, const Weights &weights, const backend::ChainPose &pose,

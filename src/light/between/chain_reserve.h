@@ -16,10 +16,15 @@ public:
                std::size_t bands, const ChainCount &count, std::uint64_t seed, unsigned threads,
                const std::atomic<bool> *cancel);
 
+  /// What a pose was told from.
+  struct Told {
+    double all = 0;        ///< I of all chains in the mean of the bands, if nothing hid an end
+    std::size_t picks = 0; ///< how many were settled
+  };
   /// Adds what all of them carry in all bands, told from as many of them as tell the whole light,
-  /// with direct_i of each pose in the first band, to about `accuracy`, if there are any.
-  void add(std::span<const backend::ChainPose> poses, std::span<const double> direct_i,
-           double accuracy, std::span<backend::ChainSums> sums) const;
+  /// with direct_i of each pose in the first band, to about `accuracy`, within limits.
+  std::vector<Told> add(std::span<const backend::ChainPose> poses, std::span<const double> direct_i,
+                        double accuracy, std::span<backend::ChainSums> sums) const;
 
 private:
   /// Neighbouring blocks of one run.

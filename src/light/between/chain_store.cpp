@@ -13,15 +13,16 @@ constexpr std::array<std::size_t, ChainStore::levels> chains_of{16'384, 49'152, 
 /// Rays for each chain that stays: most meet nothing, or do not matter.
 constexpr std::size_t rays_per_chain = 24;
 /// Chains of the reserve, and rays for each of them: it is for light that few chains meet, of which
-/// none is to be thinned away.
+/// little is to be thinned away.
 constexpr std::size_t reserve_chains = 1'048'576, reserve_rays_per_chain = 6;
 /// Poses that are lit in turn by the chains that the cache has.
 constexpr std::size_t poses_together = 16;
 /// Fewer chains than this, counted by their light, (sum I)^2 / sum I^2, are too few to tell how far
 /// off they are.
 constexpr double least_chains = 48;
-/// Of the reserve, where none carries much more than another: those that would are taken for sure.
-constexpr double least_of_reserve = 12;
+/// Of the reserve, which is asked for those that carry most: below `least_chains` half-widths are
+/// as much wider as the root of what lacks.
+constexpr double least_of_reserve = 24;
 
 /// How well chains in doubt are settled: to a part of the standard error that the replicates have
 /// anyway, or of that wanted.
@@ -48,7 +49,8 @@ ChainCount count_of(std::size_t level) {
 /// (docs/theory/bounces.md).
 constexpr double visibility_error = 0.005;
 
-BandResult result_of(const backend::ChainLight &sum, double weight, double mistaken) {
+/// `left`: that error, and `wider`: how many times the replicates' spread counts.
+BandResult result_of(const backend::ChainLight &sum, double weight, double left, double wider = 1) {
   BandResult out;
   const auto put = [&](const double(&from)[replicates], double &mean, double &half_width) {
     std::array<double, replicates> value{};
@@ -56,15 +58,14 @@ BandResult result_of(const backend::ChainLight &sum, double weight, double mista
       value[r] = from[r] / weight;
     const MeanOfReplicates found = mean_of_replicates(value);
     mean = found.mean;
-    half_width = student_of_replicates * found.deviation;
+    half_width = wider * student_of_replicates * found.deviation;
   };
   put(sum.i, out.stokes.i, out.half_width.i);
   put(sum.q, out.stokes.q, out.half_width.q);
   put(sum.u, out.stokes.u, out.half_width.u);
   put(sum.v, out.stokes.v, out.half_width.v);
   const Stokes<ScatteringPlane> &s = out.stokes;
-  const double left = std::hypot(visibility_error, mistaken),
-               polarized = left * std::hypot(s.q, s.u, s.v);
+  const double polarized = left * std::hypot(s.q, s.u, s.v);
   out.half_width.i = std::hypot(out.half_width.i, left * s.i);
   for (double *part : {&out.half_width.q, &out.half_width.u, &out.half_width.v})
     *part = std::hypot(*part, polarized);
@@ -78,6 +79,27 @@ double total_of(const backend::ChainLight &sum) {
   return out;
 }
 
+/// What the reserve told of a pose; false if it rests on too few chains.
+bool put_reserve(const backend::ChainSums &sums, const ChainReserve::Told &told,
+                 IndirectLight &out) {
+  const double total = total_of(sums.bands[0]);
+  if (!std::isfinite(told.all) || !std::isfinite(total))
+    return false;
+  out.bands.assign(sums.bands.size(), {});
+  if (!(total > 0)) {
+    // None of n passed: as much as 3/n may (95 %).
+    const double hidden = 3 * told.all / static_cast<double>(told.picks);
+    for (BandResult &band : out.bands)
+      band.half_width = {hidden, hidden, hidden, hidden};
+    return true;
+  }
+  const double met = total * total / sums.squares,
+               wider = std::sqrt(std::max(1.0, least_chains / met));
+  for (std::size_t b = 0; b < out.bands.size(); ++b)
+    out.bands[b] = result_of(sums.bands[b], 1, 0, wider);
+  return met >= least_of_reserve;
+}
+
 } // namespace
 
 /// What the poses have gathered so far.
@@ -86,6 +108,7 @@ struct ChainStore::Climb {
   std::vector<backend::ChainLight> sum; ///< [pose * bands + band], weighted by level
   std::vector<double> squares;          ///< per pose
   std::vector<double> mistaken;         ///< per pose: I that the grids call free, and is not
+  std::vector<double> narrow_i, narrow_squares; ///< per pose: of light between narrow lobes
 };
 
 ChainStore::ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
@@ -152,6 +175,8 @@ void ChainStore::add_level(std::size_t index, std::span<const Pose> poses,
                                                           (direct_i[pose * bands_] + found.mean)),
                 sums[k]);
       climb.squares[pose] += weight * weight * sums[k].squares;
+      climb.narrow_i[pose] += weight * sums[k].narrow_i;
+      climb.narrow_squares[pose] += weight * weight * sums[k].narrow_squares;
       climb.mistaken[pose] += weight * from.mistaken(at[k], sums[k]);
       for (std::size_t b = 0; b < bands_; ++b) {
         backend::ChainLight &to = climb.sum[pose * bands_ + b];
@@ -191,15 +216,12 @@ void ChainStore::ask_reserve(std::span<const Pose> poses, std::span<const double
       beside.push_back(direct_i[few[begin + k] * bands_]);
       sums[k].bands = {light.data() + k * bands_, bands_};
     }
-    from->add(at, beside, options.accuracy, sums);
+    const auto told = from->add(at, beside, options.accuracy, sums);
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t pose = few[begin + k];
-      const double total = total_of(sums[k].bands[0]);
       // What levels met is not mixed in: that they met few is a choice by what they met.
-      answer.light[pose].bands.resize(bands_);
-      for (std::size_t b = 0; b < bands_; ++b)
-        answer.light[pose].bands[b] = result_of(sums[k].bands[b], 1, 0);
-      answer.is_enough[pose] = total * total >= least_of_reserve * sums[k].squares ? 1 : 0;
+      IndirectLight &light = answer.light[few[begin + k]];
+      light.rays = 4 * told[k].picks;
+      answer.is_enough[few[begin + k]] = put_reserve(sums[k], told[k], light) ? 1 : 0;
     }
   });
 }
@@ -210,11 +232,13 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
   Answer out;
   out.light.resize(poses.size());
   out.is_enough.assign(poses.size(), 1);
-  if (surfaces_.are_narrow())
+  const bool has_reserve =
+      surfaces_.are_fast() && static_cast<double>(options.max_points) >= all_weights;
+  if (has_reserve && surfaces_.are_narrow())
     out.is_enough.assign(poses.size(), 0);
   else
     climb(poses, direct_i, options, out, threads, cancel);
-  if (static_cast<double>(options.max_points) >= all_weights && surfaces_.are_fast())
+  if (has_reserve)
     ask_reserve(poses, direct_i, options, out, threads, cancel);
   if (is_stopped(cancel))
     return {};
@@ -232,6 +256,8 @@ void ChainStore::climb(std::span<const Pose> poses, std::span<const double> dire
   climb.sum.resize(poses.size() * bands_);
   climb.squares.resize(poses.size());
   climb.mistaken.resize(poses.size());
+  climb.narrow_i.resize(poses.size());
+  climb.narrow_squares.resize(poses.size());
   for (std::size_t k = 0; k < poses.size(); ++k)
     climb.open.push_back(k);
   double weight = 0;
@@ -247,12 +273,21 @@ void ChainStore::climb(std::span<const Pose> poses, std::span<const double> dire
       IndirectLight &light = out.light[k];
       light.bands.assign(bands_, {});
       const double total = total_of(climb.sum[k * bands_]);
-      const bool is_enough = !(total > 0) || total * total >= least_chains * climb.squares[k];
+      const double narrow = climb.narrow_i[k];
+      // Light of narrow lobes counts where it is more of the whole than the accuracy asked.
+      const bool is_narrow_light =
+          narrow / (replicates * weight) >
+          options.accuracy * (direct_i[k * bands_] + total / (replicates * weight));
+      const bool is_enough =
+          !(total > 0) ||
+          (total * total >= least_chains * climb.squares[k] &&
+           (!is_narrow_light || narrow * narrow >= least_chains * climb.narrow_squares[k]));
       // Where 16 k chains meet nothing there is nothing, beside any direct light.
       bool is_met = is_enough && (total > 0 || direct_i[k * bands_] > 0);
       for (std::size_t b = 0; b < bands_; ++b) {
         light.bands[b] =
-            result_of(climb.sum[k * bands_ + b], weight, total > 0 ? climb.mistaken[k] / total : 0);
+            result_of(climb.sum[k * bands_ + b], weight,
+                      std::hypot(visibility_error, total > 0 ? climb.mistaken[k] / total : 0));
         is_met =
             is_met && light.bands[b].half_width.i <=
                           options.accuracy * (direct_i[k * bands_ + b] + light.bands[b].stokes.i);

@@ -19,11 +19,9 @@ constexpr double least_widths = 0.0049;
 /// A lobe narrower than this (GGX of alpha 0.07) is met by too few chains whatever stands at the
 /// other end, and a pose that has many others would not notice; a path begun on it meets it always.
 constexpr double least_width = 0.05;
-/// Where all lobes are narrower than this (GGX of alpha 0.14), few of the chains that levels keep
+/// Between two lobes narrower than this (GGX of alpha 0.14) few of the chains that levels keep
 /// carry anything to a pose, and some of those much: their spread tells too little.
 constexpr double wide = 0.1;
-/// What a polynomial may miss, in parts of the largest value.
-constexpr double fit_error = 5e-4;
 constexpr std::size_t cosines = 32;
 
 /// Values at Chebyshev's nodes of t = 2 (1 + bend) c/(c + bend) - 1 as powers of t; false if it
@@ -46,7 +44,7 @@ template <class Function> bool fit(const Function &f, double bend, float *out, d
     worst = std::max(worst, std::abs(sum - f(cosine(t))));
   }
   std::transform(c.begin(), c.end(), out, [](double x) { return static_cast<float>(x); });
-  return worst <= fit_error * scale;
+  return worst <= backend::chain_fit_error * scale;
 }
 
 bool fit_reflection(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
@@ -146,17 +144,27 @@ ChainSurfaces::ChainSurfaces(const Scene &scene) {
       needs_paths_ = needs_paths_ || part(a, b) != ChainPart::Whole;
       has_any_ = has_any_ || part(a, b) != ChainPart::Nothing;
     }
-  are_narrow_ = std::none_of(surface_.begin(), surface_.end(), [](const Surface *surface) {
-    return surface->has_diffuse() || surface->width() >= wide;
-  });
+  are_fast_ = are_narrow_ = has_any_;
+  for (std::uint32_t a = 0; a < surface_.size(); ++a) {
+    if (is_left_to_paths(*surface_[a]))
+      continue; // no end of a chain
+    are_fast_ = are_fast_ && is_fast(a);
+    are_narrow_ = are_narrow_ && !surface_[a]->has_diffuse() && is_narrow(a);
+  }
   tabulate_strength(bands);
+}
+
+bool ChainSurfaces::is_narrow(std::uint32_t kind) const {
+  return has_lobe(*surface_[kind], 0) && surface_[kind]->width() < wide;
 }
 
 ChainPart ChainSurfaces::part(std::uint32_t a, std::uint32_t b) const {
   if (is_left_to_paths(*surface_[a]) || is_left_to_paths(*surface_[b]))
     return ChainPart::Nothing;
-  const bool is_narrow = surface_[a]->width() * surface_[b]->width() < least_widths;
-  return is_narrow ? ChainPart::WithoutLobes : ChainPart::Whole;
+  if (surface_[a]->width() * surface_[b]->width() >= least_widths)
+    return ChainPart::Whole;
+  const bool is_lobe_alone = !surface_[a]->has_diffuse() && !surface_[b]->has_diffuse();
+  return is_lobe_alone ? ChainPart::Nothing : ChainPart::WithoutLobes;
 }
 
 void ChainSurfaces::tabulate_strength(std::size_t bands) {

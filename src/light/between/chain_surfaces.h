@@ -4,7 +4,6 @@
 #include "backend/chain_data.h"
 #include "light/between/directions.h"
 
-#include <algorithm>
 #include <umov/scene/scene.h>
 #include <unordered_map>
 #include <vector>
@@ -35,12 +34,12 @@ public:
   [[nodiscard]] bool has_any() const { return has_any_; }
   /// Per kind and band; `is_fast` of a kind says whether it holds.
   [[nodiscard]] bool is_fast(std::uint32_t kind) const { return is_fast_[kind] != 0; }
-  /// No surface has light that is wide.
+  /// Of all that can be an end of a chain.
+  [[nodiscard]] bool are_fast() const { return are_fast_; }
+  /// It has a lobe that is fairly narrow.
+  [[nodiscard]] bool is_narrow(std::uint32_t kind) const;
+  /// All that can be an end have, and no other light.
   [[nodiscard]] bool are_narrow() const { return are_narrow_; }
-  /// It holds for all kinds.
-  [[nodiscard]] bool are_fast() const {
-    return std::find(is_fast_.begin(), is_fast_.end(), 0) == is_fast_.end();
-  }
   [[nodiscard]] const std::vector<backend::ChainSurface> &fast() const { return fast_; }
   /// rms over all outer directions of what an end scatters per solid angle, by the cosine between
   /// its normal and the chain.
@@ -53,7 +52,7 @@ private:
   std::vector<char> is_fast_, leaves_any_;
   std::vector<backend::ChainSurface> fast_;
   std::vector<std::vector<double>> strength_;
-  bool needs_paths_ = false, has_any_ = false, are_narrow_ = false;
+  bool needs_paths_ = false, has_any_ = false, are_fast_ = false, are_narrow_ = false;
 };
 
 } // namespace umov
