@@ -63,6 +63,46 @@ std::vector<double> with_rate(const std::vector<double> &attitude, double rate_s
   return out;
 }
 
+/// Why a mode of a file, which anyone may have changed, cannot be followed; empty: it can.
+std::string flaw_of(const TrackMode &mode, const TrackFrame &frame) {
+  constexpr double fastest_rad_s = 1000, of_length = 1e-6, rounding = 1e-3;
+  std::size_t count = frame.errors.has_clouds ? 1 : frame.bands.size();
+  for (const PartKind &part : frame.parts)
+    count += (part.sd > 0 ? 1u : 0u) + (part.slope_sd > 0 ? 1u : 0u);
+  const std::size_t n = 6 + count;
+  if (mode.nuisances.size() != count || mode.covariance.size() != n * n)
+    return fmt::format("{} nuisances and a covariance of {} numbers, where {} and {} were expected",
+                       mode.nuisances.size(), mode.covariance.size(), count, n * n);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  if (!std::ranges::all_of(mode.nuisances, is_finite) ||
+      !std::ranges::all_of(mode.covariance, is_finite) || !std::isfinite(mode.log_weight))
+    return "a number that is not finite";
+  const Quaternion &q = mode.turning.attitude;
+  if (!(std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < of_length))
+    return "an attitude that is no quaternion of length 1";
+  if (const double rate = norm(mode.turning.rate_rad_s); !(rate < fastest_rad_s))
+    return fmt::format("a rate of {:.4g} rad/s, where less than {} was expected", rate,
+                       fastest_rad_s);
+  if (!(mode.scale > 0 && std::isfinite(mode.scale)))
+    return fmt::format("scale = {}, where a number above 0 was expected", mode.scale);
+  if (!(mode.chi2 >= 0))
+    return fmt::format("chi2 = {}, where 0 or more was expected", mode.chi2);
+  // A variance below 0 would be taken for what is known exactly.
+  for (std::size_t r = 0; r < n; ++r)
+    for (std::size_t c = 0; c <= r; ++c) {
+      const double variance = mode.covariance[r * n + r], one = mode.covariance[r * n + c],
+                   other = mode.covariance[c * n + r];
+      const double most = std::sqrt(variance * mode.covariance[c * n + c]);
+      if (!(variance > 0))
+        return fmt::format("a variance of {:.4g}, where one above 0 was expected", variance);
+      if (!(std::abs(one - other) <= rounding * most && std::abs(one) <= (1 + rounding) * most))
+        return fmt::format("a covariance of {:.4g} and {:.4g}, where standard deviations leave at "
+                           "most {:.4g}, alike both ways",
+                           one, other, most);
+    }
+  return {};
+}
+
 Result<TrackStart> start_of_modes(const std::string &text, const std::string &path,
                                   const TrackFrame &frame, double rate_sd) {
   UMOV_ASSIGN(file, read_modes_text(text, path));
@@ -82,6 +122,12 @@ Result<TrackStart> start_of_modes(const std::string &text, const std::string &pa
                                 frame.is_absolute, frame.bands.size(), frame.parts, frame.errors);
     mode.number = out.modes.size() + 1;
     mode.log_weight = std::log(row.weight);
+    if (const std::string flaw = flaw_of(mode, frame); !flaw.empty())
+      return fail(ErrorCode::BadInput,
+                  fmt::format("row {} has {}; modes.ecsv of umov invert pose, spin or track was "
+                              "expected",
+                              mode.number, flaw),
+                  {path});
     if (file.has_rates)
       mode = turned_on(mode, seconds_between(until, epoch), 0);
     out.modes.push_back(std::move(mode));
@@ -103,9 +149,21 @@ ordered_json frame_json(const TrackFrame &frame) {
   return {{"bands", frame.bands}, {"parts", parts}, {"clouds", frame.errors.has_clouds}};
 }
 
+/// A whole number. The library for JSON would make one of -1 and of 1e30 as well.
+std::size_t count_at(const json &object, const char *key) {
+  constexpr std::uint64_t most = std::uint64_t{1} << 53;
+  const json &value = object.at(key);
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
+    throw Failure(Error{ErrorCode::BadInput,
+                        fmt::format("{} = {}, where a whole number from 0 on was expected", key,
+                                    value.dump(-1, ' ', false, json::error_handler_t::replace)),
+                        {}});
+  return value.get<std::size_t>();
+}
+
 TrackMode mode_of(const json &one) {
   TrackMode out;
-  one.at("number").get_to(out.number);
+  out.number = count_at(one, "number");
   const auto q = one.at("q").get<std::array<double, 4>>();
   const auto w = one.at("rate_rad_s").get<std::array<double, 3>>();
   out.turning = {{q[0], q[1], q[2], q[3]}, {w[0], w[1], w[2]}};
@@ -114,24 +172,24 @@ TrackMode mode_of(const json &one) {
   one.at("log_weight").get_to(out.log_weight);
   one.at("scale").get_to(out.scale);
   one.at("chi2").get_to(out.chi2);
-  one.at("measurements").get_to(out.measurements);
+  out.measurements = count_at(one, "measurements");
   return out;
 }
 
-/// As many numbers as its unknowns are, and none that is not finite.
-bool is_whole(const TrackMode &mode, const TrackFrame &frame) {
-  std::size_t count = frame.errors.has_clouds ? 1 : frame.bands.size();
-  for (const PartKind &part : frame.parts)
-    count += (part.sd > 0 ? 1u : 0u) + (part.slope_sd > 0 ? 1u : 0u);
-  const auto is_finite = [](double x) { return std::isfinite(x); };
-  const Quaternion &q = mode.turning.attitude;
-  const double length = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  const Vec3<Body> &w = mode.turning.rate_rad_s;
-  return std::abs(length - 1) < 1e-6 && std::isfinite(w.x + w.y + w.z) && mode.scale > 0 &&
-         std::isfinite(mode.scale) && mode.chi2 >= 0 && mode.nuisances.size() == count &&
-         mode.covariance.size() == (6 + count) * (6 + count) &&
-         std::ranges::all_of(mode.covariance, is_finite) &&
-         std::ranges::all_of(mode.nuisances, is_finite) && std::isfinite(mode.log_weight);
+/// Why those of a state are none; empty: they are. Names of theirs are counted on.
+std::string flaw_of(const TrackStart &start, const TrackFrame &frame) {
+  constexpr double rounding = 1e-6;
+  if (start.modes.empty() || !(start.median_i >= 0 && start.floor >= 0))
+    return "no mode, or a floor below 0";
+  double sum = 0;
+  for (const TrackMode &mode : start.modes) {
+    if (const std::string flaw = flaw_of(mode, frame); !flaw.empty())
+      return fmt::format("mode {} has {}", mode.number, flaw);
+    sum += weight_of(mode);
+  }
+  if (!(std::abs(sum - 1) < rounding))
+    return fmt::format("the weights of its modes add up to {:.6g}, where 1 was expected", sum);
+  return {};
 }
 
 Result<TrackStart> start_of_state(const std::string &text, const std::string &path,
@@ -169,18 +227,19 @@ Result<TrackStart> start_of_state(const std::string &text, const std::string &pa
     all.at("median_intensity").get_to(out.median_i);
     all.at("floor").get_to(out.floor);
     all.at("search_verdict").get_to(out.searched);
-    all.at("misses").get_to(out.memory.misses);
-    all.at("next_number").get_to(out.memory.next_number);
+    out.memory.misses = count_at(all, "misses");
+    out.memory.next_number = count_at(all, "next_number");
     all.at("is_wide").get_to(out.memory.is_wide);
     all.at("missed_utc").get_to(out.missed_utc);
     for (const json &one : all.at("modes"))
       out.modes.push_back(mode_of(one));
   } catch (const json::exception &e) {
     return no_state(e.what());
+  } catch (const Failure &e) {
+    return no_state(e.error().message);
   }
-  if (out.modes.empty() || !(out.median_i >= 0 && out.floor >= 0) ||
-      !std::ranges::all_of(out.modes, [&](const TrackMode &mode) { return is_whole(mode, frame); }))
-    return no_state("modes that are not whole");
+  if (const std::string flaw = flaw_of(out, frame); !flaw.empty())
+    return no_state(flaw);
   return out;
 }
 

@@ -14,7 +14,6 @@ namespace {
 
 using namespace umov;
 
-constexpr std::uint64_t key = 42;
 constexpr std::size_t header_bytes = 120, key_at = 16, checksum_at = 24;
 
 /// Two groups of small classes and one large class.
@@ -29,6 +28,16 @@ GroupPlan plan() {
     out.groups.push_back(group);
   }
   return out;
+}
+
+/// Of a triangle of one class, with the plan's groups.
+std::uint64_t key() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles.push_back({{0, 1, 2}});
+  FacetClasses classes;
+  classes.list.emplace_back().normal = {0, 0, 1};
+  return mask_key(mesh, classes, plan(), {4, 2});
 }
 
 /// Fowler, Noll & Vo's hash as the format has it: list by list, the header's field being 0.
@@ -55,7 +64,10 @@ std::string signed_bytes(std::string_view input, const MaskStore &lists) {
   std::string out(input);
   if (out.size() < header_bytes)
     return out;
-  std::memcpy(out.data() + key_at, &key, 8);
+  std::uint64_t own_key = 0;
+  std::memcpy(&own_key, out.data() + key_at, 8);
+  if (const std::uint64_t right = key(); own_key != 0) // 0: of another mesh
+    std::memcpy(out.data() + key_at, &right, 8);
   std::memset(out.data() + checksum_at, 0, 8);
   Checksum sum;
   std::string_view rest = out;
@@ -79,7 +91,8 @@ std::string signed_bytes(std::string_view input, const MaskStore &lists) {
 /// A file that has a name and no place on a disk.
 class MemoryFile {
 public:
-  explicit MemoryFile(std::string_view bytes) : descriptor_(::memfd_create("masks", MFD_CLOEXEC)) {
+  explicit MemoryFile(std::string_view bytes = {})
+      : descriptor_(::memfd_create("masks", MFD_CLOEXEC)) {
     fuzz::require(::write(descriptor_, bytes.data(), bytes.size()) ==
                       static_cast<ssize_t>(bytes.size()),
                   "memory to write to");
@@ -87,6 +100,12 @@ public:
   ~MemoryFile() { ::close(descriptor_); }
   MemoryFile(const MemoryFile &) = delete;
   MemoryFile &operator=(const MemoryFile &) = delete;
+  [[nodiscard]] std::string bytes() const {
+    std::string out(static_cast<std::size_t>(::lseek(descriptor_, 0, SEEK_END)), '\0');
+    const ssize_t read = ::pread(descriptor_, out.data(), out.size(), 0);
+    fuzz::require(read == static_cast<ssize_t>(out.size()), "what was written is there");
+    return out;
+  }
   [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
 private:
@@ -98,13 +117,16 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
   const MaskSize cells{4, 2};
   const MaskStore lists = empty_masks(plan(), cells);
-  const MemoryFile file(signed_bytes(fuzz::text_of(data, size), lists));
-  const auto read = read_masks(file.path(), key, plan(), cells);
+  const std::string bytes = signed_bytes(fuzz::text_of(data, size), lists);
+  const MemoryFile file(bytes), again;
+  const auto read = read_masks(file.path(), key(), plan(), cells);
   if (!fuzz::is_read(read))
     return 0;
   // What the loops will look at lies in the pool.
   for (const MaskTableStore *table : {&read->small, &read->large})
     for (const std::uint32_t offset : table->offset)
       fuzz::require(offset < read->pool.size(), "offsets lie within the pool");
+  fuzz::require(write_masks(again.path(), *read, key()).has_value() && again.bytes() == bytes,
+                "what is read is what was written");
   return 0;
 }

@@ -131,6 +131,12 @@ Result<void> FitsReader::add_column(int column, TextTable &out) {
   out.columns.push_back(std::move(name));
   types_.push_back(type);
   const auto room = static_cast<std::size_t>(std::max(width, repeat)) + 1;
+  // A table without rows holds no text that says how long one may be.
+  if (room > size_)
+    return refuse(
+        fmt::format("column \"{}\" has texts of {} letters, more than the {} bytes of the "
+                    "file: it was cut off or changed. Export or fetch it again.",
+                    printable(out.columns.back()), room - 1, size_));
   cell_.resize(std::max(room, cell_.size()));
   return {};
 }

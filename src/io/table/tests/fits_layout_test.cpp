@@ -173,5 +173,20 @@ TEST(FitsLayout, OthersAreRefusedWithPartAndKeyword) {
   }
 }
 
+// A cell's room is made before there is a row: 2 GB for a header of 6 KB.
+TEST(FitsLayout, TextsThatNoFileHoldsAreRefused) {
+  constexpr std::int64_t letters = 2'000'000'000;
+  const std::string bytes =
+      primary() + header({"XTENSION= 'BINTABLE'", number("BITPIX", 8), number("NAXIS", 2),
+                          number("NAXIS1", letters), number("NAXIS2", 0), number("PCOUNT", 0),
+                          number("GCOUNT", 1), number("TFIELDS", 1), "TTYPE1  = 'name    '",
+                          "TFORM1  = '2000000000A'"});
+  const auto read = read_fits_table(bytes, "a.fits");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::BadInput);
+  EXPECT_NE(read.error().message.find("texts of 2000000000 letters"), std::string::npos)
+      << read.error().text();
+}
+
 } // namespace
 } // namespace umov
