@@ -28,10 +28,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   fuzz::require(std::abs(sum - 1) < 1e-5, "weights that add up to 1");
   if (!text.starts_with('{'))
     return 0;
-  const std::string written = jobs::state_json(*read, frame, TrackLoss::None, Verdict::Determined);
-  const auto again = fuzz::must(jobs::read_track_start({"input", written}, frame, 0.1),
-                                "what is written is read");
-  fuzz::require(jobs::state_json(again, frame, TrackLoss::None, Verdict::Determined) == written,
+  const std::string written =
+      jobs::state_json(*read, frame, TrackLoss::None, jobs::Verdict::Determined);
+  const auto again =
+      fuzz::must(jobs::read_track_start({"input", written}, frame, 0.1), "what is written is read");
+  fuzz::require(jobs::state_json(again, frame, TrackLoss::None, jobs::Verdict::Determined) ==
+                    written,
                 "a state comes back as it was");
   return 0;
 }
