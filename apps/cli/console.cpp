@@ -74,6 +74,15 @@ int report(const Error &error) {
   return static_cast<int>(error.code);
 }
 
+int report_out_of_memory() {
+  constexpr std::string_view text = "error: out of memory; ask for less at once\n",
+                             erase_bar = "\r\033[K";
+  const bool is_terminal = ::isatty(STDERR_FILENO) != 0;
+  for (const std::string_view part : {is_terminal ? erase_bar : std::string_view(), text})
+    [[maybe_unused]] const ssize_t said = ::write(STDERR_FILENO, part.data(), part.size());
+  return static_cast<int>(ErrorCode::Device);
+}
+
 void report(const Diagnostics &diagnostics, const Common &common) {
   if (common.quiet)
     return;

@@ -32,6 +32,8 @@ void add_cache(CLI::App &verb, Common &common);
 
 /// "error: ..." on stderr; returns the exit code.
 int report(const Error &error);
+/// That there is no memory, said without asking for any; its exit code.
+int report_out_of_memory();
 void report(const Diagnostics &diagnostics, const Common &common);
 /// A line of the log, unless -q.
 void note(const Common &common, const std::string &text);

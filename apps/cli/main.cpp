@@ -154,19 +154,15 @@ void hold_standard_descriptors() {
       const int held = ::open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
 }
 
-} // namespace
-
-int main(int argc, char **argv) {
-  std::signal(SIGPIPE, SIG_DFL); // `umov ... | head` ends quietly
-  std::signal(SIGXFSZ, SIG_IGN); // a file over the limit is an error of writing
-  hold_standard_descriptors();
-  cli::command_line().assign(argv, argv + argc);
+/// The command; all that ends it but a lack of memory is told.
+int run_and_report(int argc, char **argv) {
   try {
+    cli::command_line().assign(argv, argv + argc);
     const int code = run(argc, argv);
     const auto printed = cli::flush_output();
     return printed || code != 0 ? code : cli::report(printed.error());
   } catch (const std::bad_alloc &) {
-    return cli::report(Error{ErrorCode::Device, "out of memory; ask for less at once", {}});
+    throw;
   } catch (const Failure &failure) {
     return cli::report(failure.error());
   } catch (const std::system_error &problem) {
@@ -179,5 +175,34 @@ int main(int argc, char **argv) {
     return printed ? report_bug(problem) : cli::report(printed.error());
   } catch (const std::exception &bug) {
     return report_bug(bug);
+  }
+}
+
+/// JSON and Embree ask for memory to let go of what they hold, where nothing may be thrown: then
+/// the program ends at once, but with its word.
+std::terminate_handler usual_end = nullptr;
+[[noreturn]] void end_without_memory() {
+  try {
+    if (const auto thrown = std::current_exception())
+      std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc &) {
+    ::_exit(cli::report_out_of_memory());
+  } catch (...) {
+  }
+  usual_end();
+  std::abort();
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  std::signal(SIGPIPE, SIG_DFL); // `umov ... | head` ends quietly
+  std::signal(SIGXFSZ, SIG_IGN); // a file over the limit is an error of writing
+  usual_end = std::set_terminate(end_without_memory);
+  hold_standard_descriptors();
+  try {
+    return run_and_report(argc, argv);
+  } catch (const std::bad_alloc &) { // of a message, too
+    return cli::report_out_of_memory();
   }
 }

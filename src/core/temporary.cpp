@@ -2,11 +2,12 @@
 
 #include "core/output_place.h"
 
+#include <array>
 #include <atomic>
+#include <charconv>
 #include <ctime>
 #include <fcntl.h>
 #include <random>
-#include <sstream>
 #include <string_view>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -50,14 +51,19 @@ bool is_abandoned(const fs::path &path) {
   return out;
 }
 
+/// Not by a stream, which leaves out what it has no memory for.
+std::string hex(unsigned value) {
+  std::array<char, 2 * sizeof value> out{};
+  return {out.data(), std::to_chars(out.data(), out.data() + out.size(), value, 16).ptr};
+}
+
 } // namespace
 
 fs::path temporary_name(const fs::path &output, const std::string &before) {
   static std::atomic<unsigned> count{0};
   std::random_device random;
-  std::ostringstream out;
-  out << stem(output, before) << ::getpid() << '-' << std::hex << random() << ++count;
-  return output.parent_path() / out.str();
+  return output.parent_path() /
+         (stem(output, before) + std::to_string(::getpid()) + '-' + hex(random()) + hex(++count));
 }
 
 void hold_temporary(int descriptor) {

@@ -2,10 +2,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <new>
 #include <set>
 #include <umov/core/text.h>
 #include <vector>
 
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 
 namespace umov {
@@ -269,7 +271,11 @@ std::optional<std::string> why_no_text(std::string_view bytes) {
 std::string sha256_hex(std::string_view bytes) {
   std::array<unsigned char, 32> digest{};
   unsigned length = 0;
-  EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr);
+  // It fails for want of memory alone: it would leave the hash of nothing, and ends the program
+  // where what it begins with could not be made.
+  if (OSSL_LIB_CTX_get0_global_default() == nullptr ||
+      EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1)
+    throw std::bad_alloc();
   constexpr std::string_view digits = "0123456789abcdef";
   std::string out;
   for (const unsigned char byte : digest) {

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <sys/stat.h>
@@ -258,6 +259,8 @@ std::optional<FailedShard> failed_from_json(const std::string &text) {
     return FailedShard{whole_at(all, "index"), code_at(all), whole_at(all, "attempts"),
                        printable(all.at("message").get<std::string>()),
                        printable(all.at("host").get<std::string>())};
+  } catch (const std::bad_alloc &) {
+    throw;
   } catch (const std::exception &) {
     return std::nullopt; // damaged: the shard is tried again as if nothing were known
   }

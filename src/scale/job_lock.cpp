@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <umov/core/text.h>
 
@@ -92,6 +93,8 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
       throw std::runtime_error("without shards or tables");
     if (all.at("key").get<std::string>() != out.key())
       throw std::runtime_error("its key does not fit what it says: it was changed by hand");
+  } catch (const std::bad_alloc &) {
+    throw; // of what is whole
   } catch (const std::exception &problem) {
     return fail(ErrorCode::BadInput,
                 text.empty()

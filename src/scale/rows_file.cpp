@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
+#include <new>
 #include <umov/core/mapped_file.h>
 #include <umov/core/text.h>
 
@@ -196,6 +197,8 @@ Result<RowsFile> RowsFile::read(std::string_view bytes, const std::string &name)
   state->name = name;
   try {
     state->parse();
+  } catch (const std::bad_alloc &) {
+    throw; // of what is whole
   } catch (const std::exception &problem) {
     return damaged(problem.what());
   }

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <fmt/format.h>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 #include <umov/core/text.h>
@@ -82,6 +83,8 @@ Result<ShardRecord> record_from_json(const std::string &line) {
     all.at("seconds").get_to(out.seconds);
     all.at("cpu_s").get_to(out.cpu_s);
     return out;
+  } catch (const std::bad_alloc &) {
+    throw; // of what is whole
   } catch (const std::exception &problem) {
     return fail(ErrorCode::Internal,
                 fmt::format("a worker said \"{}\": {}", printable(line), problem.what()));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <limits>
 #include <type_traits>
@@ -24,6 +25,8 @@ struct Occluder::State {
   embree::Order order = embree::coherent;
 
   ~State() {
+    if (!has_memory())
+      return;
     if (scene != nullptr)
       rtcReleaseScene(scene);
     if (device != nullptr)
@@ -31,7 +34,13 @@ struct Occluder::State {
   }
   [[nodiscard]] Vec3<Body> to_model(Vec3<Body> p) const { return (p - centre) * scale; }
   /// Embree takes memory to release a scene, and ends the program where there is none: what could
-  /// not be built for lack of it is left as it is.
+  /// not be built for lack of it is left as it is, and so is what is held when it ends.
+  static bool has_memory() {
+    constexpr std::size_t enough = 1u << 20;
+    void *volatile block = std::malloc(enough); // compilers leave out what is only asked for
+    std::free(block);
+    return block != nullptr;
+  }
   static void leave(std::unique_ptr<State> &state) {
     [[maybe_unused]] const State *left = state.release();
   }

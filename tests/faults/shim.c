@@ -2,7 +2,8 @@
  *
  * UMOV_FAULT=CALL:N:ERRNO  the N-th call (from 1) of CALL fails with ERRNO, and so do those after it
  *                          unless N ends in "!"; CALL: write (files under UMOV_FAULT_UNDER), sync,
- *                          rename, open (for writing), mkdir, read, thread, clock (set back by a day)
+ *                          rename, open (for writing), mkdir, read, thread, clock (set back by a day),
+ *                          alloc (of memory, from main on)
  *                          ERRNO below 0: that signal is sent instead, before the call
  * UMOV_FAULT_UNDER         prefix of the names of the files that are meant
  * UMOV_FAULT_COUNT=FILE    the numbers of all calls are added to FILE at the end of each process
@@ -27,11 +28,11 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { WRITE, SYNC, RENAME, OPEN, MKDIR, READ, THREAD, CLOCK, KINDS };
-static const char *const names[KINDS] = {"write", "sync", "rename", "open", "mkdir", "read", "thread", "clock"};
+enum { WRITE, SYNC, RENAME, OPEN, MKDIR, READ, THREAD, CLOCK, ALLOC, KINDS };
+static const char *const names[KINDS] = {"write", "sync", "rename", "open", "mkdir", "read", "thread", "clock", "alloc"};
 static atomic_long counts[KINDS];
 static long at = 0;
-static int kind = -1, code = 0, once = 0;
+static int kind = -1, code = 0, once = 0, has_begun = 0;
 static char under[4096];
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
@@ -174,4 +175,35 @@ int clock_gettime(clockid_t clock, struct timespec *out) {
   if (clock == CLOCK_REALTIME && fails(CLOCK))
     out->tv_sec -= 86400;
   return done;
+}
+
+/* glibc's own, which need no looking up: that would ask for memory itself. */
+extern void *__libc_malloc(size_t), *__libc_calloc(size_t, size_t), *__libc_realloc(void *, size_t),
+    *__libc_memalign(size_t, size_t);
+/* Global objects are made before main, of libraries too: nothing there could say what is missing. */
+static int (*real_main)(int, char **, char **);
+static int begin(int argc, char **argv, char **environment) {
+  has_begun = 1;
+  return real_main(argc, argv, environment);
+}
+int __libc_start_main(int (*main)(int, char **, char **), int argc, char **argv, void (*init)(void),
+                      void (*fini)(void), void (*rtld_fini)(void), void *stack_end) {
+  real_main = main;
+  int (*const start)(int (*)(int, char **, char **), int, char **, void (*)(void), void (*)(void), void (*)(void),
+                     void *) = dlsym(RTLD_NEXT, "__libc_start_main");
+  return start(begin, argc, argv, init, fini, rtld_fini, stack_end);
+}
+static int has_no_memory(void) { return has_begun && fails(ALLOC); }
+void *malloc(size_t size) { return has_no_memory() ? NULL : __libc_malloc(size); }
+void *calloc(size_t count, size_t size) { return has_no_memory() ? NULL : __libc_calloc(count, size); }
+void *realloc(void *old, size_t size) { return has_no_memory() ? NULL : __libc_realloc(old, size); }
+void *memalign(size_t to, size_t size) { return has_no_memory() ? NULL : __libc_memalign(to, size); }
+void *aligned_alloc(size_t to, size_t size) { return memalign(to, size); }
+int posix_memalign(void **out, size_t to, size_t size) {
+  const int saved = errno;
+  void *const got = memalign(to, size);
+  errno = saved;
+  if (got)
+    *out = got;
+  return got ? 0 : ENOMEM;
 }

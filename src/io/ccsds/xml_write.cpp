@@ -1,7 +1,7 @@
 #include "io/ccsds/keywords.h"
+#include "io/xml_text.h"
 
 #include <pugixml.hpp>
-#include <sstream>
 
 namespace umov::ccsds {
 namespace {
@@ -93,6 +93,7 @@ Result<void> put_data(pugi::xml_node data, const Message &message, const Segment
 } // namespace
 
 Result<std::string> write_xml(const Message &message) {
+  throw_where_memory_ends();
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   declaration.append_attribute("version") = "1.0";
@@ -107,9 +108,7 @@ Result<std::string> write_xml(const Message &message) {
     put(node.append_child("metadata"), segment.metadata);
     UMOV_TRY(put_data(node.append_child("data"), message, segment));
   }
-  std::ostringstream out;
-  document.save(out, "  ");
-  return out.str();
+  return text_of(document);
 }
 
 } // namespace umov::ccsds

@@ -3,13 +3,13 @@
 #include <umov/io/elements_file.h>
 
 #include "io/elements/write_tle.h"
+#include "io/xml_text.h"
 
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
-#include <sstream>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
 #include <umov/time/epoch.h>
@@ -97,6 +97,7 @@ void put(pugi::xml_node parent, const std::vector<Item> &items) {
 }
 
 std::string xml_of(const std::vector<ElementSet> &sets, const std::string &created) {
+  throw_where_memory_ends();
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   declaration.append_attribute("version") = "1.0";
@@ -115,9 +116,7 @@ std::string xml_of(const std::vector<ElementSet> &sets, const std::string &creat
     put(data.append_child("meanElements"), elements_of(set));
     put(data.append_child("tleParameters"), tle_parameters_of(set));
   }
-  std::ostringstream out;
-  document.save(out, "  ");
-  return out.str();
+  return text_of(document);
 }
 
 /// Names given by a program may hold anything; what is no UTF-8 must not stop the writing.

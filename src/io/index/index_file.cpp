@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <sstream>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <yaml-cpp/yaml.h>
@@ -29,6 +28,16 @@ struct Reader {
   }
 };
 
+/// The next word, which leaves the text; empty at its end. Not by a stream, which takes a lack of
+/// memory for the end.
+std::string_view next_word(std::string_view &text) {
+  constexpr std::string_view blanks = " \t\n\v\f\r";
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  const std::string_view out = text.substr(0, text.find_first_of(blanks));
+  text.remove_prefix(out.size());
+  return out;
+}
+
 Result<std::string> text_of(const Reader &reader, const YAML::Node &entry, const char *key) {
   const YAML::Node node = entry[key];
   if (!node || !node.IsScalar())
@@ -40,8 +49,8 @@ Result<std::vector<double>> numbers_of(const Reader &reader, const YAML::Node &e
                                        const char *key) {
   UMOV_ASSIGN(text, text_of(reader, entry, key));
   std::vector<double> out;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
+  std::string_view rest = text;
+  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
     const auto value = parse_number(word);
     if (!value)
       return reader.problem(entry[key],
@@ -56,13 +65,14 @@ Result<std::vector<std::vector<double>>> rows_of(const Reader &reader, const YAM
                                                  std::size_t columns) {
   UMOV_ASSIGN(text, text_of(reader, entry, "data"));
   std::vector<std::vector<double>> out(columns);
-  std::istringstream lines(text);
+  std::string_view rest = text;
   std::size_t line_number = 0;
-  for (std::string line; std::getline(lines, line);) {
+  while (!rest.empty()) {
+    std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     ++line_number;
-    std::istringstream words(line);
     std::vector<double> row;
-    for (std::string word; words >> word;) {
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
       const auto value = parse_number(word);
       if (!value)
         return reader.problem(entry["data"],

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <exception>
 #include <fmt/format.h>
+#include <new>
 
 namespace umov {
 namespace {
@@ -64,6 +65,8 @@ Result<std::string> encode_exr(std::uint32_t width, std::uint32_t height,
       file.writePixels(static_cast<int>(height));
     }
     return std::move(stream.text);
+  } catch (const std::bad_alloc &) {
+    throw;
   } catch (const std::exception &problem) {
     return fail(ErrorCode::Internal,
                 std::string("OpenEXR cannot write a picture: ") + problem.what());

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdio.h>
@@ -165,8 +166,11 @@ struct Temporary {
     if (descriptor >= 0)
       ::close(descriptor);
     std::error_code code;
-    if (!path.empty())
-      fs::remove_all(path, code);
+    try {
+      if (!path.empty())
+        fs::remove_all(path, code);
+    } catch (const std::bad_alloc &) { // who writes here again removes it
+    }
   }
 };
 

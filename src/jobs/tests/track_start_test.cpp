@@ -35,13 +35,19 @@ json state() {
                      {"chi2", 3.5},
                      {"measurements", 4}});
   }
-  return {{"program", "umov"},     {"question", "track"},
+  return {{"program", "umov"},
+          {"question", "track"},
           {"time_utc", "2018-01-21T05:08:00Z"},
-          {"bands", {"nm:550"}},   {"parts", json::array()},
-          {"clouds", false},       {"median_intensity", 2.5},
-          {"floor", 0.02},         {"search_verdict", "determined"},
-          {"misses", 0},           {"missed_utc", ""},
-          {"next_number", 3},      {"is_wide", false},
+          {"bands", {"nm:550"}},
+          {"parts", json::array()},
+          {"clouds", false},
+          {"median_intensity", 2.5},
+          {"floor", 0.02},
+          {"search_verdict", "determined"},
+          {"misses", 0},
+          {"missed_utc", ""},
+          {"next_number", 3},
+          {"is_wide", false},
           {"modes", modes}};
 }
 
