@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <execinfo.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -199,6 +200,10 @@ int main(int argc, char **argv) {
   std::signal(SIGPIPE, SIG_DFL); // `umov ... | head` ends quietly
   std::signal(SIGXFSZ, SIG_IGN); // a file over the limit is an error of writing
   usual_end = std::set_terminate(end_without_memory);
+  // Where an exception leaves std::call_once, glibc loads what unwinds through C, for which it may
+  // have no memory by then and ends the program: it is loaded here.
+  void *frame = nullptr;
+  [[maybe_unused]] const int frames = ::backtrace(&frame, 1);
   hold_standard_descriptors();
   try {
     return run_and_report(argc, argv);
