@@ -13,14 +13,17 @@ namespace umov {
 
 /// From here on a document that cannot grow throws; to be called before one is made.
 inline void throw_where_memory_ends() {
-  pugi::set_memory_management_functions(
-      [](std::size_t size) {
-        void *const out = std::malloc(size);
-        if (out == nullptr)
-          throw std::bad_alloc();
-        return out;
-      },
-      std::free);
+  [[maybe_unused]] static const bool is_set = [] {
+    pugi::set_memory_management_functions(
+        [](std::size_t size) {
+          void *const out = std::malloc(size);
+          if (out == nullptr)
+            throw std::bad_alloc();
+          return out;
+        },
+        std::free);
+    return true;
+  }();
 }
 
 inline std::string text_of(const pugi::xml_document &document) {
