@@ -36,7 +36,7 @@ struct Occluder::State {
   /// Embree takes memory to release a scene, and ends the program where there is none: what could
   /// not be built for lack of it is left as it is, and so is what is held when it ends.
   static bool has_memory() {
-    constexpr std::size_t enough = 1u << 20;
+    constexpr std::size_t enough = 1u << 16;    // taken from the heap, not mapped
     void *volatile block = std::malloc(enough); // compilers leave out what is only asked for
     std::free(block);
     return block != nullptr;

@@ -2,6 +2,7 @@
 was, and never a result that lacks what there was no memory for."""
 import errno
 import re
+import shutil
 
 import pytest
 from faults import JOBS, PASSES, ROOT, assert_clean_end, contents, place, shim, times  # noqa: F401
@@ -48,10 +49,12 @@ def test_jobs_without_memory(place, job):
 
     def check(done, fault):
         assert_same(contents(place.folder / result), good)
-        # Folders need memory to be removed; the next run removes them.
-        assert [name for name in place.names() if ".part-" not in name] == before, fault
-        if "!" in fault:
-            assert not place.leftovers(), fault
+        # What needs memory to be removed may stay where there is none; a later run removes it.
+        if "!" not in fault:
+            for name in place.leftovers():
+                path = place.folder / name
+                shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+        assert place.names() == before, fault
 
     sweep(place, arguments, times(6, 200), check)
 
