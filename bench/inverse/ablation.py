@@ -43,8 +43,7 @@ class Bench:
         materials = {g: OTHER[name].get(m, m) for g, m in blind.MATERIALS[OBJECT].items()}
         text = blind.SCENARIO.format(seed=self.o.seed, name=name, root=blind.ROOT, mesh=self.work / f"{kind}.obj", law=blind.inertial(attitude),
                                      step=span[2], materials="\n".join(f'{g} = "{m}"' for g, m in materials.items()), method=method,
-                                     out=self.work / "truth")
-        text = text.replace("2018-01-21T05:08:00Z", f"2018-01-24T{span[0]}Z").replace("2018-01-21T05:16:00Z", f"2018-01-24T{span[1]}Z")
+                                     out=self.work / "truth", span=[f"2018-01-24T{time}Z" for time in span[:2]])
         path = self.work / (f"{name}.toml" if kind == "fit" else "true.toml")
         path.write_text(text + 'pol_frame = "scattering"\n')
         return path

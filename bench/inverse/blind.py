@@ -39,6 +39,7 @@ MESH = {  # fitted, true
     "cubesat": (["cubesat", "--panels", 1], ["cubesat", "--panels", 1]),
     "metals": (["box-wing", "--facets", 2000], ["box-wing", "--facets", 10000]),
 }
+SPAN = ("2018-01-21T05:08:00Z", "2018-01-21T05:16:00Z")  # of a pass
 SCENARIO = """umov = 1
 title = "blind"
 seed = {seed}
@@ -47,8 +48,8 @@ lat_deg = 20.7083
 lon_deg = -156.2578
 alt_m = 3058
 [time]
-start = 2018-01-21T05:08:00Z
-stop = 2018-01-21T05:16:00Z
+start = {span[0]}
+stop = {span[1]}
 step_s = {step}
 only = {{ alt_min_deg = 10, sunlit = true }}
 [[object]]
@@ -235,13 +236,13 @@ def by_mitsuba(program, mesh, surfaces):
     return Truth(program, mesh, [425, 550, 650], surfaces)
 
 
-def make_curve(o, work, meshes, trial, law, step, rng):
+def make_curve(o, work, meshes, trial, law, step, rng, span=SPAN):
     """Scenarios of truth and fit, and what an observer has of the truth; returns its rows."""
     materials = "\n".join(f'{k} = "{v}"' for k, v in MATERIALS[o.object].items())
     for mesh, method, out, attitude, name in ((meshes[1], "rays", "truth", law, "true.toml"),
                                               (meshes[0], "masks", "fit", inertial([1, 0, 0, 0]), "fit.toml")):
         text = SCENARIO.format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step, materials=materials,
-                               method=method, out=work / out)
+                               method=method, out=work / out, span=span)
         if o.surfaces > 1 and out == "truth" and not o.truth:
             text = text.replace(f'method = "{method}"', f'method = "{method}"\nbounces = {o.surfaces}')
         if o.object == "metals":

@@ -44,7 +44,7 @@ class Chain:
     def scenario(self, name, kind, law, cadence, method, seed):
         text = blind.SCENARIO.format(seed=seed, name=name, root=blind.ROOT, mesh=self.work / f"{name}_{kind}.obj", law=law, step=12,
                                      materials="\n".join(f'{g} = "{m}"' for g, m in blind.MATERIALS[name].items()), method=method,
-                                     out=self.work / "out")
+                                     out=self.work / "out", span=blind.SPAN)
         text = text.replace("title =", f'instrument = "{self.work}/telescope.toml"\ntitle =')
         return text + CHAIN.format(exposure=min(1, cadence / 4), cadence=cadence)
 

@@ -37,7 +37,7 @@ class Maker:
     def scenario(self, name, method, attitude, materials, mesh):
         text = blind.SCENARIO.format(seed=self.o.seed, name=name, root=blind.ROOT, mesh=mesh, law=blind.inertial(attitude), step=12,
                                      materials="\n".join(f'{g} = "{m}"' for g, m in materials.items()), method=method,
-                                     out=self.work / "out")
+                                     out=self.work / "out", span=blind.SPAN)
         return text + "".join(METALS[m] for m in sorted(set(materials.values()) & set(METALS)))
 
     def object(self, number):

@@ -18,7 +18,7 @@ import stage  # noqa: E402
 
 PUBLIC = sorted(name for name in umov.__all__ if callable(getattr(umov, name)))
 MODULES = ["engines", "errors", "light_curves", "materials", "orbits", "plot", "runs", "satellites", "scenarios",
-           "sites", "tables", "times", "abundances", "pictures", "turnable", "observing", "passbands", "samples", "periods", "inversions", "libraries",
+           "sites", "tables", "times", "abundances", "pictures", "turnable", "observing", "passbands", "samples", "periods", "inversions", "tracking", "libraries",
            "measurements", "scale", "rows", "flux_tables", "_turns", "_clouds", "_axes"]
 
 

@@ -18,7 +18,7 @@ from .engines import Engine, Light, random_poses
 from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
                      UmovWarning, UsageError, Where)
 from .flux_tables import flux_table
-from .inversions import Fit, Inversion, identify, invert_health, invert_material, invert_plan, invert_pose, invert_spin, invert_track
+from .inversions import Fit, Inversion, identify, invert_health, invert_material, invert_plan, invert_pose, invert_spin
 from .libraries import build_library
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
@@ -36,6 +36,7 @@ from .scenarios import Scenario, schema
 from .sites import Site, site_names
 from .tables import Table
 from .times import utc
+from .tracking import invert_track
 
 if TYPE_CHECKING:
     from . import plot, scale, turnable

@@ -43,6 +43,7 @@ SearchOptions search_of_table(SearchOptions options) {
   options.starts = std::min(options.starts, starts);
   options.samples = std::min(options.samples, samples);
   options.progress = {};
+  options.needs_set = false;
   return options;
 }
 

@@ -1,10 +1,12 @@
 #include <umov/inverse/pose_search.h>
 
 #include "algebra/dense.h"
+#include "inverse/attitude_set.h"
 #include "inverse/model_error.h"
 #include "inverse/pose_modes.h"
 #include "inverse/posterior.h"
 #include "inverse/some_epochs.h"
+#include "inverse/tempered.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +19,16 @@ using inverse::degree;
 using inverse::Freedom;
 using inverse::Samples;
 using inverse::stopped;
+using inverse::tempered;
 using inverse::TurningFit;
 
 namespace {
 
-/// A likelihood in which the model may be a quarter off: a glint narrower than a cell of the grid
-/// cannot veto it then.
-CurveErrors tempered(CurveErrors errors) {
-  errors.floor_q = std::hypot(errors.of_q(), 0.125);
-  errors.floor = std::hypot(errors.floor, 0.25);
-  errors.floor_median = std::hypot(errors.floor_median, 0.1);
-  errors.outlier_share = 0; // the floor forgives them
-  return errors;
+/// How many times as many places a search of a short curve follows: it leaves more of them alike,
+/// and they are lit the quicker.
+std::size_t times_of(const ObservedCurve &curve) {
+  constexpr std::size_t usual = 40, most = 4;
+  return std::clamp<std::size_t>(usual / std::max<std::size_t>(curve.epochs.size(), 1), 1, most);
 }
 
 /// How many of the sorted chi2 hold all but a ten-thousandth of the probability: of faint light a
@@ -70,7 +70,7 @@ Result<std::vector<Turning>> search_grid(const CurveModel &model, const SearchOp
     std::size_t epochs, part; ///< and which part of the grid is left after it
   };
   constexpr Round rounds[] = {{8, 6}, {20, 20}, {60, 40}};
-  const CurveErrors errors = tempered(options.errors);
+  const CurveErrors errors = tempered(options.errors, model.curve());
   for (std::size_t r = 0; r < std::size(rounds); ++r) {
     if (options.progress)
       options.progress("search", r, std::size(rounds));
@@ -238,20 +238,27 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
   auto &[modes, samples, is_settled] = peaks;
   constexpr double much = 0.01; // a fifth of what a set of 95 % may leave out
   if (judged.of > 0 && (beside > much || !is_described(modes, samples))) {
-    Samples all = inverse::sample_all(quick, likelihood, options);
+    Samples all = inverse::sample_all(quick, model, likelihood, options);
     if (all.draws.empty())
       return tl::unexpected(stopped());
     // Either can miss probability, hardly find too much: peaks that particles from afar did not
     // come upon lack in their evidence.
     constexpr double missed = 1; // e-fold
     out.is_broad = all.log_evidence > samples.log_evidence - missed;
-    if (out.is_broad)
+    if (out.is_broad) {
+      inverse::add_lost(samples, all);
       samples = std::move(all);
-    else if (beside > much)
+    } else if (beside > much)
       is_settled = false;
   }
   out.is_settled = is_settled || out.is_broad;
   out.effective = samples.effective;
+  if (judged.of > 0) // of all attitudes
+    out.set95 = inverse::highest_density(samples.draws,
+                                         out.is_broad ? std::span<const PoseMode>()
+                                                      : std::span<const PoseMode>(modes),
+                                         samples.runs)
+                    .balls;
   std::ranges::stable_sort(modes, std::ranges::greater{}, &PoseMode::weight);
   out.chi2 = 1e300;
   for (const PoseMode &mode : modes)
@@ -366,15 +373,15 @@ Result<Places> find_places(const SearchModels &models, FoundErrors &errors,
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
   UMOV_ASSIGN(left, search_grid(quick, options));
-  const CurveLikelihood rough(model.curve(), tempered(options.errors));
+  const CurveLikelihood rough(model.curve(), tempered(options.errors, model.curve()));
   // Many at first, and few of those that stay apart: a basin of one glint is a long valley, and
   // there is one for each flat that could have mirrored the Sun.
   const inverse::FitPlan tempered_steps{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};
-  constexpr std::size_t most = 80;
+  const std::size_t times = times_of(model.curve()), most = 80 * times;
   tell_refined(options, 0);
-  const auto fits =
-      inverse::fit_turnings(quick, rough, inverse::spread_out(left, options.starts, 5 * degree),
-                            epochs_of_first_steps(model), tempered_steps);
+  const auto fits = inverse::fit_turnings(
+      quick, rough, inverse::spread_out(left, options.starts * times, 5 * degree),
+      epochs_of_first_steps(model), tempered_steps);
   Places out{std::move(left), inverse::turnings_of(fits, most)};
   bool has_changed = false;
   if (fits.empty() || !errors.ask(out.best, has_changed))
@@ -387,7 +394,7 @@ Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
                                            const std::vector<Turning> &places, FoundErrors &errors,
                                            const SearchOptions &options) {
   const inverse::FitPlan first_steps{Freedom::Attitude, 12, 0, 0, 1e-3, options.threads};
-  constexpr std::size_t most = 24;
+  const std::size_t most = 24 * times_of(models.last.curve());
   tell_refined(options, 1);
   const auto fits =
       inverse::fit_turnings(models.first, errors.likelihood(), places, {}, first_steps);
@@ -428,9 +435,6 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
   UMOV_ASSIGN(fits, fit_places(models, places.best, errors, options));
   UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), fits, Freedom::Attitude,
                              {places.judged, options.grid}, options));
-  out.set95 =
-      inverse::highest_density(out.samples, out.is_broad ? std::span<const PoseMode>()
-                                                         : std::span<const PoseMode>(out.modes));
   out.share_of_so3 = inverse::share_of(out.set95);
   errors.tell(out);
   if (&quick != &first && &quick != &model)

@@ -12,6 +12,9 @@ struct Samples {
   std::vector<PoseSample> draws;
   double log_evidence = 0;
   double effective = 0; ///< size of an unweighted sample as good as this one
+  /// Of each draw, the run that it came of, which is alike in those of one; empty: each draw is one
+  /// by itself.
+  std::vector<std::size_t> runs;
 };
 
 /// Normal deviates of a seed: the same for the same index.
@@ -24,16 +27,14 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
                      std::vector<PoseMode> &modes, const SearchOptions &options);
 
 /// Sequential Monte Carlo from all attitudes to the posterior (Del Moral, Doucet & Jasra 2006):
-/// for a posterior of any shape that is not much narrower than its first particles lie apart.
-Samples sample_all(const CurveModel &model, const CurveLikelihood &likelihood,
-                   const SearchOptions &options);
-
-/// Region of highest density with 95 % of the weight, as balls around its samples: each as large as
-/// the distance to the fourth neighbour, but no larger than its mode is wide, or, without modes,
-/// than three times the median ball (lone samples have their neighbours in other places).
-std::vector<AttitudeBall> highest_density(const std::vector<PoseSample> &samples,
-                                          std::span<const PoseMode> modes);
-/// Share of SO(3) that a union of balls takes.
-double share_of(std::span<const AttitudeBall> set);
+/// for a posterior of any shape that is not much narrower than its first particles lie apart. Two
+/// runs, each from a grid of its own, and of curves of fewer than 40 epochs up to four until the
+/// set of all leaves little of each run outside: what one run lost all of its particles have lost.
+/// They are followed by `quick` light and weighted by that of `last`.
+Samples sample_all(const CurveModel &quick, const CurveModel &last,
+                   const CurveLikelihood &likelihood, const SearchOptions &options);
+/// Particles with what they lost of peaks: draws around these that lie out of the particles' set
+/// count as they do among the peaks' own.
+void add_lost(const Samples &peaks, Samples &particles);
 
 } // namespace umov::inverse

@@ -1,7 +1,9 @@
 #include <umov/inverse/spin_search.h>
 
 #include "algebra/dense.h"
-#include "inverse/posterior.h"
+#include "inverse/attitude_set.h"
+#include "inverse/tempered.h"
+#include "inverse/turning_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +16,7 @@ namespace umov {
 using inverse::degree;
 using inverse::Freedom;
 using inverse::stopped;
+using inverse::tempered;
 using inverse::TurningFit;
 
 namespace {
@@ -44,14 +47,6 @@ std::vector<std::size_t> within(const ObservedCurve &curve, double half_s, std::
   for (std::size_t k = 0; k < most; ++k)
     out.push_back(all[k * (all.size() - 1) / (most - 1)]);
   return out;
-}
-
-CurveErrors tempered(CurveErrors errors, double floor) {
-  errors.floor_q = std::hypot(errors.of_q(), floor / 2);
-  errors.floor = std::hypot(errors.floor, floor);
-  errors.floor_median = std::hypot(errors.floor_median, floor / 2.5);
-  errors.outlier_share = 0;
-  return errors;
 }
 
 /// Turnings that the light itself is asked about.
@@ -148,7 +143,8 @@ bool PeriodSearch::judge(const CurveModel &model, std::size_t epochs_max,
                          const std::vector<Turning> &turnings,
                          std::vector<Candidate> &found) const {
   const auto epochs = within(coarse_.curve(), 1.25 * period_s_, epochs_max);
-  const CurveLikelihood rough(coarse_.curve(), tempered(options_.errors, 0.25), epochs);
+  const CurveLikelihood rough(coarse_.curve(), tempered(options_.errors, coarse_.curve(), 0.25),
+                              epochs);
   const auto compared = inverse::compare_all(model, rough, turnings, epochs, options_.threads);
   for (std::size_t k = 0; k < compared.size(); ++k)
     found.push_back({turnings[k], compared[k].chi2});
@@ -229,7 +225,7 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
   bool is_fanned = false;
   for (std::optional<double> reach_s = 1.25 * period_s_; reach_s;) {
     const auto epochs = within(curve, *reach_s, epochs_max);
-    const CurveLikelihood rough(curve, tempered(options_.errors, 0.15), epochs);
+    const CurveLikelihood rough(curve, tempered(options_.errors, curve, 0.15), epochs);
     std::vector<Turning> starts;
     for (const Candidate &c : found)
       if ((is_fanned || starts.size() < kept) &&
@@ -355,7 +351,7 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
     move(mode, -shift);
   for (PoseSample &sample : answer.samples)
     sample.turning = moved(sample.turning, -shift);
-  answer.set95 = inverse::highest_density(answer.samples, answer.modes);
+  answer.set95 = inverse::highest_density(answer.samples, answer.modes).balls;
   answer.share_of_so3 = inverse::share_of(answer.set95);
   SpinAnswer out;
   out.periods = periods_of(answer, request.periods_s);

@@ -1,6 +1,9 @@
 #include <umov/inverse/track.h>
 
+#include "inverse/tempered.h"
+#include "inverse/track_spread.h"
 #include "inverse/track_update.h"
+#include "inverse/turning_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +29,8 @@ namespace {
 constexpr double gain_open = 0.5;
 /// Share of the probability from which on a filter's doubt is the bank's.
 constexpr double counting_share = 0.01;
+/// Filters side by side where some are split.
+constexpr std::size_t together = 60;
 
 } // namespace
 
@@ -94,10 +99,13 @@ VectorXd between(const Neighbour &one, const Neighbour &other) {
 /// deviation apart.
 bool is_one(const Neighbour &one, const Neighbour &other, const VectorXd &apart) {
   constexpr double least = 0.125;
-  const MatrixXd middle = (one.belief.covariance + other.belief.covariance) / 2;
   // Their turns alone are farther apart than that, as of most: spares the rest.
-  if (apart.head<3>().squaredNorm() > middle.diagonal().head<3>().sum())
+  const auto variance = [](const Neighbour &n) {
+    return n.belief.covariance.diagonal().head<3>().sum();
+  };
+  if (apart.head<3>().squaredNorm() > (variance(one) + variance(other)) / 2)
     return false;
+  const MatrixXd middle = (one.belief.covariance + other.belief.covariance) / 2;
   const MatrixXd root = inverse::lower_root(middle);
   return inverse::square_in(root, apart) / 8 +
              (inverse::log_determinant(root) - (one.log_determinant + other.log_determinant) / 2) /
@@ -118,7 +126,7 @@ AttitudeBank::AttitudeBank(std::vector<TrackMode> modes, PoseLighting light,
       parts_(std::move(parts)), options_(options) {}
 
 Result<TrackStep> AttitudeBank::step(const ObservedCurve &epoch, double seconds) {
-  look_for_width(seconds);
+  look_for_opening(seconds);
   for (TrackMode &mode : modes_)
     mode = turned_on(mode, seconds, options_.rate_noise);
   TrackStep out;
@@ -129,25 +137,93 @@ Result<TrackStep> AttitudeBank::step(const ObservedCurve &epoch, double seconds)
   return out;
 }
 
-/// How far attitudes open by an epoch, whatever it will say of them: a filter that is wide then
-/// becomes narrow at the first place that fits. By the rate's and the attitude's own errors, which
-/// are not folded at half a turn as attitudes are.
-void AttitudeBank::look_for_width(double seconds) {
-  constexpr double wide_rad = 15 * pi / 180;
+/// How far attitudes open by an epoch, by the rate's and the attitude's own errors, which are not
+/// folded at half a turn as attitudes are.
+void AttitudeBank::look_for_opening(double seconds) {
   const double open_rad = pi / std::sqrt(3.0); // points of it lie beyond half a turn
-  double wide = 0, open = 0;
+  double open = 0;
   for (const TrackMode &mode : modes_) {
     const Belief belief = inverse::belief_of(mode);
     const auto variances = belief.covariance.diagonal();
     const double most = std::sqrt(variances.head<3>().maxCoeff()) +
                         std::sqrt(variances.segment<3>(inverse::rate_at).maxCoeff()) * seconds +
                         options_.rate_noise * std::sqrt(seconds * seconds * seconds / 3);
-    wide += most > wide_rad ? std::exp(mode.log_weight) : 0;
     open += most > open_rad ? std::exp(mode.log_weight) : 0;
   }
-  memory_.is_wide = memory_.is_wide || wide > counting_share;
   if (loss_ == TrackLoss::None && open > counting_share)
     loss_ = TrackLoss::Open;
+}
+
+namespace {
+
+/// A narrow filter of a wide one.
+struct Place {
+  std::size_t mode = 0, of = 0; ///< of the bank, and among those that it is spread over
+  double log_prior = 0, log_posterior = 0;
+};
+
+/// The likeliest of places that hold all but a thousandth of what the rough likelihood leaves them.
+void keep_likely(std::vector<Place> &places) {
+  constexpr double left_out = 1e-3;
+  std::ranges::stable_sort(places, std::greater<>(), &Place::log_posterior);
+  double sum = 0;
+  for (const Place &place : places)
+    sum += std::exp(place.log_posterior - places.front().log_posterior);
+  double held = 0;
+  std::size_t kept = 0;
+  while (kept < places.size() && held < (1 - left_out) * sum)
+    held += std::exp(places[kept++].log_posterior - places.front().log_posterior);
+  places.resize(kept);
+}
+
+/// -2 ln of how likely an epoch is in a light whose scale is as open as a filter's was at first.
+double minus_2_log_of(const Comparison &seen, double scale) {
+  const double off = std::log(std::max(seen.scale, 1e-30) / scale) / gain_open;
+  return seen.minus_2_log + off * off;
+}
+
+} // namespace
+
+/// Filters that have become too wide to look over their light are narrow ones on a grid from here
+/// on. Which of them are kept a likelihood decides that forgives a quarter of I, as in a search;
+/// their weights are those that they had before, so that the epoch counts once.
+Result<void> AttitudeBank::spread_wide(const CurveModel &model, TrackStep &out) {
+  std::vector<inverse::SpreadBelief> spreads;
+  std::vector<Place> places;
+  std::vector<Turning> asked;
+  for (std::size_t m = 0; m < modes_.size(); ++m) {
+    spreads.emplace_back(inverse::belief_of(modes_[m]));
+    for (std::size_t k = 0; k < spreads[m].size(); ++k) {
+      places.push_back({m, k, modes_[m].log_weight + std::log(spreads[m].weight(k)), 0});
+      asked.push_back({spreads[m].attitude(k), {}});
+    }
+  }
+  if (places.size() == modes_.size())
+    return {};
+  const CurveLikelihood rough(model.curve(), inverse::tempered(options_.errors, model.curve()));
+  const bool is_lit =
+      model.for_each(asked, {}, options_.threads, [&](std::size_t k, const ModelLight &light) {
+        places[k].log_posterior =
+            places[k].log_prior -
+            minus_2_log_of(rough.compare(light), modes_[places[k].mode].scale) / 2;
+      });
+  if (!is_lit)
+    return tl::unexpected(inverse::stopped());
+  out.poses_lit += asked.size();
+  out.spread = places.size();
+  keep_likely(places);
+  std::vector<TrackMode> all;
+  std::vector<bool> is_named(modes_.size(), false);
+  for (const Place &place : places) {
+    TrackMode one = modes_[place.mode];
+    inverse::put(spreads[place.mode].belief(place.of), one);
+    one.log_weight = place.log_prior;
+    one.number = is_named[place.mode] ? memory_.next_number++ : one.number;
+    is_named[place.mode] = true;
+    all.push_back(std::move(one));
+  }
+  modes_ = std::move(all);
+  return {};
 }
 
 /// All filters side by side, so that the light of all their points comes in one batch.
@@ -160,15 +236,16 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
   for (std::size_t b = 0; b < column.size(); ++b)
     column[b] = b;
   const CurveModel model(epoch, light_, column, parts_);
+  for (const TrackMode &mode : modes_)
+    memory_.next_number = std::max(memory_.next_number, mode.number + 1);
+  UMOV_TRY(spread_wide(model, out));
   std::vector<Learning> all;
   for (TrackMode &mode : modes_) {
-    memory_.next_number = std::max(memory_.next_number, mode.number + 1);
     Belief belief = inverse::belief_of(mode);
     if (options_.errors.has_clouds)
       forget_gain(belief, mode.scale);
     all.push_back({std::move(mode), std::make_unique<FilterUpdate>(std::move(belief), likelihood)});
   }
-  constexpr std::size_t together = 60; // filters, where some are split
   const std::size_t most = std::max(all.size(), together);
   constexpr double straight = 25; // squares of errors that a line may miss over a filter
   for (;;) {
@@ -187,7 +264,7 @@ Result<void> AttitudeBank::learn(const ObservedCurve &epoch, TrackStep &out) {
           all[of[k / FilterUpdate::asked]].update->take(k % FilterUpdate::asked, light);
         });
     if (!is_lit)
-      return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+      return tl::unexpected(inverse::stopped());
     out.poses_lit += asked.size();
     for (const std::size_t k : of) {
       const FilterUpdate::Bend bend =
@@ -263,11 +340,19 @@ void AttitudeBank::settle(TrackStep &out) {
     mode.log_weight -= all;
 }
 
+/// Of more filters than can be split those go too that together hold next to nothing.
 void AttitudeBank::drop_light(TrackStep &out) {
-  constexpr double least = -20;
+  constexpr double least = -20, next_to_nothing = 1e-4;
   std::size_t kept = 0;
   while (kept < modes_.size() && modes_[kept].log_weight >= modes_[0].log_weight + least)
     ++kept;
+  double sum = 0;
+  for (std::size_t k = 0; k < kept; ++k)
+    sum += std::exp(modes_[k].log_weight - modes_[0].log_weight);
+  double left = next_to_nothing * sum;
+  while (kept > together &&
+         (left -= std::exp(modes_[kept - 1].log_weight - modes_[0].log_weight)) > 0)
+    --kept;
   for (std::size_t k = kept; k < modes_.size(); ++k)
     out.dropped.push_back(modes_[k].number);
   modes_.resize(kept);

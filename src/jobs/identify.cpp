@@ -288,6 +288,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   how.none_prior = request.none_prior;
   SearchOptions own_search = how.search;
   own_search.progress = {};
+  own_search.needs_set = false;
   how.own_light = [&](std::size_t k) { return own.answer(library, k, curve, own_search); };
   how.has_own_light = [&](std::size_t k) { return own.has(k); };
   const Candidates candidates{

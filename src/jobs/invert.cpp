@@ -46,7 +46,8 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                 {"samples", samples_table(answer, false)},
                 {"twins", twins_table(answer, symmetries)},
                 {"fit", fit_table(observed, model, answer)}};
-  note_start(out.tables.front().table, observed, answer, judgement.verdict);
+  note_start(out.tables.front().table, body_words(ready.light.model().scene()), observed, answer,
+             judgement.verdict);
   out.page =
       inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer, out.summary);
   out.inputs = observed.inputs;

@@ -191,7 +191,8 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                 {"set95", set_table(answer.pose)},
                 {"samples", samples_table(answer.pose, true)},
                 {"fit", fit_table(ready.observed, model, answer.pose)}};
-  note_start(out.tables.front().table, ready.observed, answer.pose, judgement.verdict);
+  note_start(out.tables.front().table, body_words(ready.light.model().scene()), ready.observed,
+             answer.pose, judgement.verdict);
   out.page = inversion_page("Which spin: " + scenario.title, out.tables[4].table, answer.pose,
                             out.summary);
   out.inputs = ready.observed.inputs;

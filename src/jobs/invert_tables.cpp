@@ -63,8 +63,11 @@ void add_attitude_columns(Table &table, const std::vector<Quaternion> &attitudes
     table.add(names[k], "", description, std::move(c[k]));
 }
 
-void note_start(Table &modes, const ObservedLightCurve &observed, const PoseAnswer &answer,
-                Verdict verdict) {
+void note_start(Table &modes, const BodyWords &body, const ObservedLightCurve &observed,
+                const PoseAnswer &answer, Verdict verdict) {
+  modes.note(mesh_note, body.mesh);
+  modes.note(materials_note, body.materials);
+  modes.note(unit_note, unit_of_light(observed.curve.is_absolute));
   modes.note(epoch_note, to_iso_exact(observed.geometry.front().time));
   modes.note(until_note, to_iso_exact(observed.geometry.back().time));
   modes.note(median_note, fmt::format("{}", inverse::median_of_i(observed.curve)));

@@ -1,6 +1,8 @@
 #pragma once
 // Private: answers of an inversion as tables and words.
 
+#include "jobs/body_words.h"
+
 #include <optional>
 #include <umov/inverse/unmix.h>
 #include <umov/jobs/invert.h>
@@ -9,14 +11,19 @@ namespace umov::jobs {
 
 /// modes.ecsv; with rates where they were free.
 Table modes_table(const PoseAnswer &answer, bool has_rates);
-/// What `umov invert track` needs to know of modes: when they hold, up to when they had data, how
-/// bright those are, the floor and the verdict that they rest on.
-void note_start(Table &modes, const ObservedLightCurve &observed, const PoseAnswer &answer,
-                Verdict verdict);
+/// What `umov invert track` needs to know of modes: of which body they are, when they hold, up to
+/// when they had data, how bright those are and in which unit, the floor and the verdict that they
+/// rest on.
+void note_start(Table &modes, const BodyWords &body, const ObservedLightCurve &observed,
+                const PoseAnswer &answer, Verdict verdict);
 /// Keys of those notes, which are of one answer alone.
 inline constexpr const char *epoch_note = "epoch_utc", *until_note = "data_until_utc",
                             *median_note = "median_intensity", *floor_note = "floor",
-                            *verdict_note = "search_verdict";
+                            *verdict_note = "search_verdict", *unit_note = "light_unit";
+/// Keys of those that are of all answers about a body.
+inline constexpr const char *mesh_note = "object_mesh", *materials_note = "object_materials";
+/// What I is in: known only where the light is absolute.
+inline const char *unit_of_light(bool is_absolute) { return is_absolute ? "m2 / sr" : "relative"; }
 /// set95.ecsv.
 Table set_table(const PoseAnswer &answer);
 /// samples.ecsv.

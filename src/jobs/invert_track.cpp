@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <umov/core/median.h>
 #include <umov/core/quantity.h>
+#include <umov/core/text.h>
+#include <umov/inverse/sample_errors.h>
 
 namespace umov::jobs {
 namespace {
@@ -43,21 +45,38 @@ ObservedLightCurve part_of(const ObservedLightCurve &all, std::size_t first, std
   return out;
 }
 
-/// One epoch in the bands of the scenario.
+/// One epoch in the bands of the scenario. Rows stand in order of epochs.
 ObservedCurve epoch_of(const ObservedLightCurve &all, std::size_t epoch,
                        const std::vector<std::string> &bands) {
-  ObservedCurve out = part_of(all, epoch, 1).curve;
-  for (ObservedSample &sample : out.samples)
-    sample.band = all.column[sample.band];
-  for (ObservedCount &count : out.counts)
-    count.band = all.column[count.band];
+  ObservedCurve out;
   out.bands = bands;
+  out.is_absolute = all.curve.is_absolute;
+  out.epochs = {all.curve.epochs[epoch]};
+  out.epochs.front().seconds = 0;
+  const auto take = [&](const auto &rows, auto &to) {
+    const auto of = [](const auto &row) { return row.epoch; };
+    const auto end = std::ranges::upper_bound(rows, epoch, {}, of);
+    for (auto row = std::ranges::lower_bound(rows, epoch, {}, of); row != end; ++row) {
+      to.push_back(*row);
+      to.back().epoch = 0;
+      to.back().band = all.column[row->band];
+    }
+  };
+  take(all.curve.samples, out.samples);
+  take(all.curve.counts, out.counts);
   return out;
 }
 
 void tell(const TrackStep &step, const std::string &time, TrackHistory &out) {
+  constexpr std::size_t few = 20;
+  if (step.spread > 0)
+    out.events.push_back(
+        fmt::format("{}: wide modes were spread over {}", time, counted(step.spread, "place")));
+  if (step.dropped.size() > few)
+    out.events.push_back(fmt::format("{}: {} modes fell away", time, step.dropped.size()));
   for (const std::size_t number : step.dropped)
-    out.events.push_back(fmt::format("{}: mode {} fell below e^-20 of the best", time, number));
+    if (step.dropped.size() <= few)
+      out.events.push_back(fmt::format("{}: mode {} fell below e^-20 of the best", time, number));
   for (const auto &[one, other] : step.joined)
     out.events.push_back(fmt::format("{}: mode {} became one with mode {}", time, one, other));
 }
@@ -129,7 +148,8 @@ PoseAnswer at_begin(PoseAnswer answer, const ObservedCurve &curve) {
 }
 
 /// modes.ecsv, in the form of umov invert spin, at the last epoch.
-Table last_modes(const PoseAnswer &answer, const TrackStart &now, Verdict verdict) {
+Table last_modes(const PoseAnswer &answer, const TrackStart &now, const TrackFrame &frame,
+                 Verdict verdict) {
   Table out = modes_table(answer, true);
   const std::string time = to_iso_exact(now.time);
   out.note(epoch_note, time);
@@ -137,6 +157,9 @@ Table last_modes(const PoseAnswer &answer, const TrackStart &now, Verdict verdic
   out.note(median_note, fmt::format("{}", now.median_i));
   out.note(floor_note, fmt::format("{}", now.floor));
   out.note(verdict_note, searched_by(now, verdict));
+  out.note(mesh_note, frame.body.mesh);
+  out.note(materials_note, frame.body.materials);
+  out.note(unit_note, unit_of_light(frame.is_absolute));
   return out;
 }
 
@@ -148,10 +171,14 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
   UMOV_ASSIGN(start, open_track_start(track.start));
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics, monitor.cancel));
   take_apart(ready, request, options, diagnostics, monitor.cancel);
-  TrackFrame frame{{}, parts_of(ready), request.errors, ready.observed.curve.is_absolute};
+  TrackFrame frame{{},
+                   parts_of(ready),
+                   request.errors,
+                   ready.observed.curve.is_absolute,
+                   body_words(ready.light.model().scene())};
   for (const Band &band : scenario.bands)
     frame.bands.push_back(band.name);
-  UMOV_ASSIGN(now, read_track_start(start, frame, track.rate_sd * rad_per_deg));
+  UMOV_ASSIGN(now, read_track_start(start, frame, track.rate_sd * rad_per_deg, diagnostics));
   frame.errors.median_i = now.median_i;
   frame.errors.floor = now.floor = std::max(request.errors.floor, now.floor);
   const auto &geometry = ready.observed.geometry;
@@ -165,6 +192,7 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
                             to_iso(now.time)),
                 {request.observations.front()});
   ObservedLightCurve observed = part_of(ready.observed, before, geometry.size() - before);
+  UMOV_TRY(check_brightness(start, frame, now.median_i, inverse::median_of_i(observed.curve)));
   const bool is_quick = request.method == LightMethod::Masks;
   const auto light = is_quick ? followed_lighting(ready, options.threads, monitor)
                               : searched_lighting(ready, options.threads, monitor);
@@ -187,7 +215,7 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
   out.summary = track_summary(now, found.history, answer, judgement);
   out.json = track_json(now, found.history, answer, judgement, symmetries);
   out.state = state_json(now, frame, found.history.loss, out.verdict);
-  out.tables = {{"modes", last_modes(answer, now, out.verdict)},
+  out.tables = {{"modes", last_modes(answer, now, frame, out.verdict)},
                 {"track", track_table(found.history, frame)},
                 {"fit", fit_table(observed, found.fitted, frame.errors)}};
   out.page = track_page("Followed: " + scenario.title, out.tables[2].table, out.tables[1].table,

@@ -1,5 +1,6 @@
 #include "jobs/track_start.h"
 
+#include "jobs/invert_tables.h"
 #include "jobs/track_tables.h"
 
 #include <algorithm>
@@ -50,6 +51,42 @@ Result<double> number_of(const ModesFile &file, const std::string &path, const c
         fmt::format("{} = \"{}\"; a number of 0 or more was expected", key, printable(text)),
         {path});
   return *value;
+}
+
+/// BadInput where a start is about another body than the scenario's, or about light in another
+/// unit. `text_of`: what it says under a key; empty: nothing.
+Result<void> check_frame(const TrackFrame &frame, const std::string &path,
+                         const std::function<std::string(const char *)> &text_of) {
+  const BodyWords body{text_of(mesh_note), text_of(materials_note)};
+  if (const auto other = difference_of(body, frame.body, "the start", "the scenario"))
+    return fail(ErrorCode::BadInput,
+                "the start is about another body than the scenario's: " + *other +
+                    ". Take the scenario that the answer was made with, or search anew with umov "
+                    "invert pose or spin",
+                {path});
+  const std::string unit = text_of(unit_note), wanted = unit_of_light(frame.is_absolute);
+  if (unit != wanted)
+    return fail(ErrorCode::BadInput,
+                fmt::format("the start is about light in \"{}\", and these observations are in "
+                            "\"{}\": the scale of one says nothing of the other. Give both as "
+                            "fluxes of one unit, or both as magnitudes or irradiances",
+                            printable(unit), wanted),
+                {path});
+  return {};
+}
+
+/// The same of modes, which tables made by hand may leave unsaid.
+Result<void> check_frame(const TrackFrame &frame, const ModesFile &file, const std::string &path,
+                         Diagnostics &diagnostics) {
+  for (const char *key : {mesh_note, materials_note, unit_note})
+    if (!file.notes.contains(key)) {
+      diagnostics.warn(fmt::format("the header does not say {}: whether the start is about this "
+                                   "body and light of this unit is not checked",
+                                   key),
+                       {path});
+      return {};
+    }
+  return check_frame(frame, path, [&](const char *key) { return file.notes.at(key); });
 }
 
 /// The rate of a body that was taken for one that does not turn.
@@ -104,7 +141,8 @@ std::string flaw_of(const TrackMode &mode, const TrackFrame &frame) {
 }
 
 Result<TrackStart> start_of_modes(const std::string &text, const std::string &path,
-                                  const TrackFrame &frame, double rate_sd) {
+                                  const TrackFrame &frame, double rate_sd,
+                                  Diagnostics &diagnostics) {
   UMOV_ASSIGN(file, read_modes_text(text, path));
   TrackStart out;
   UMOV_ASSIGN(epoch, time_of(file, path, epoch_note));
@@ -112,6 +150,7 @@ Result<TrackStart> start_of_modes(const std::string &text, const std::string &pa
   UMOV_ASSIGN(median, number_of(file, path, median_note));
   UMOV_ASSIGN(floor, number_of(file, path, floor_note));
   UMOV_ASSIGN(searched, note_of(file, path, verdict_note));
+  UMOV_TRY(check_frame(frame, file, path, diagnostics));
   out.time = until;
   out.median_i = median;
   out.floor = floor;
@@ -210,6 +249,7 @@ Result<TrackStart> start_of_state(const std::string &text, const std::string &pa
                             "spin of later observations",
                             printable(text_of("time_utc"))),
                 {path});
+  UMOV_TRY(check_frame(frame, path, text_of));
   const ordered_json wanted = frame_json(frame);
   for (const char *key : {"bands", "parts", "clouds"})
     if (!all.contains(key) || all[key] != json(wanted[key]))
@@ -268,10 +308,10 @@ Result<TrackStartFile> open_track_start(const std::string &path) {
 }
 
 Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
-                                    double rate_sd) {
+                                    double rate_sd, Diagnostics &diagnostics) {
   const bool is_state = file.text.starts_with('{');
   UMOV_ASSIGN(out, is_state ? start_of_state(file.text, file.path, frame)
-                            : start_of_modes(file.text, file.path, frame, rate_sd));
+                            : start_of_modes(file.text, file.path, frame, rate_sd, diagnostics));
   if (out.searched == name_of(Verdict::NoFit))
     return fail(ErrorCode::BadInput,
                 "the search or tracking that it began with explains nothing (no_fit): there is no "
@@ -279,6 +319,20 @@ Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame
                 {file.path});
   out.inputs.push_back({file.path, sha256_hex(file.text)});
   return out;
+}
+
+Result<void> check_brightness(const TrackStartFile &file, const TrackFrame &frame,
+                              double start_median, double median) {
+  constexpr double most = 1000; // what a glint is above the rest, and no median
+  if (frame.is_absolute || !(start_median > 0) || !(median > 0) ||
+      (median < most * start_median && start_median < most * median))
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("in the median these observations are {:.2g} times as bright as those "
+                          "that the start is about (distance and sunlight taken out): are both "
+                          "fluxes of one unit?",
+                          median / start_median),
+              {file.path});
 }
 
 std::string searched_by(const TrackStart &state, Verdict verdict) {
@@ -293,6 +347,9 @@ std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLo
   out["program"] = "umov";
   out["question"] = "track";
   out["time_utc"] = to_iso_exact(state.time);
+  out[mesh_note] = frame.body.mesh;
+  out[materials_note] = frame.body.materials;
+  out[unit_note] = unit_of_light(frame.is_absolute);
   out.update(frame_json(frame));
   out["median_intensity"] = state.median_i;
   out["floor"] = state.floor;

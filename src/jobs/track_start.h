@@ -1,6 +1,9 @@
 #pragma once
 // Private: what a tracking begins with, and what it leaves for the next one.
 
+#include "jobs/body_words.h"
+
+#include <umov/core/diagnostics.h>
 #include <umov/core/quantity.h>
 #include <umov/inverse/track.h>
 #include <umov/jobs/invert.h>
@@ -27,6 +30,7 @@ struct TrackFrame {
   std::vector<PartKind> parts;
   CurveErrors errors;
   bool is_absolute = false; ///< of the light that is to be followed
+  BodyWords body;           ///< that it is of
 };
 
 /// A start as it was read.
@@ -37,10 +41,15 @@ struct TrackStartFile {
 /// named, BadInput for a folder that has neither; before any work is done.
 Result<TrackStartFile> open_track_start(const std::string &path);
 /// What it says. Attitudes of `pose` hold until its data end, and their rate is 0 to `rate_sd`
-/// [rad/s]; those of `spin` have turned until then. BadInput for what is no such answer, one of
-/// other bands or materials, and one without an attitude to be followed.
+/// [rad/s]; those of `spin` have turned until then. BadInput for what is no such answer, one about
+/// another body or light of another unit, a state of other bands or materials' errors, and one
+/// without an attitude to be followed. Warns of modes that do not say what they are of.
 Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
-                                    double rate_sd);
+                                    double rate_sd, Diagnostics &diagnostics);
+/// BadInput where light of no unit is a thousand times as bright as that of the start, or as faint:
+/// it is in another unit then.
+Result<void> check_brightness(const TrackStartFile &file, const TrackFrame &frame,
+                              double start_median, double median);
 /// What a start says of the search before it, if a tracking with this verdict is one.
 std::string searched_by(const TrackStart &state, Verdict verdict);
 /// state.json: all digits, so that the next tracking goes on as if there had been no end.

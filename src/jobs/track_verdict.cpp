@@ -48,8 +48,7 @@ void note_doubts(const TrackStart &now, const TrackHistory &history, const PoseA
                     history.lost_utc));
   if (now.memory.is_wide && history.loss == TrackLoss::None)
     out.notes.emplace_back(
-        "before some of the data the attitude was open to more than 15 deg about some axis, or the "
-        "light bent more than filters have room for: what they say since then may be far off; "
+        "the light bent more than filters have room for: what they say since then may be far off; "
         "search anew with the later observations");
   if (now.searched == name_of(Verdict::Undetermined))
     out.notes.emplace_back("the search that it began with was undetermined, as its own notes say: "

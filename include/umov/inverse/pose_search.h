@@ -19,8 +19,10 @@ struct SearchOptions {
   std::size_t grid = 60'000;  ///< attitudes that are looked at first
   std::size_t starts = 300;   ///< of them, spread out, that are refined
   std::size_t samples = 1000; ///< of the posterior
-  std::uint64_t seed = 0;     ///< of the samples
-  unsigned threads = 0;       ///< the answer does not depend on it
+  /// The evidence alone is asked for: what a set needs more than that is left out.
+  bool needs_set = true;
+  std::uint64_t seed = 0; ///< of the samples
+  unsigned threads = 0;   ///< the answer does not depend on it
   /// Told what is being done, and how much of it.
   std::function<void(const char *what, std::size_t done, std::size_t total)> progress = {};
 };

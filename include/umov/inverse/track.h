@@ -51,8 +51,8 @@ enum class TrackLoss {
 struct TrackMemory {
   std::size_t misses = 0;      ///< measured epochs since the last that was explained: 3 are a loss
   std::size_t next_number = 0; ///< of the filter that comes next; 0: one above those that there are
-  /// Before some data an attitude was open to more than filters can look over (15 deg about some
-  /// axis), or they were more than there is room for: what they say since then may be far off.
+  /// The light of some epoch bent, or left open, more than there is room for in filters: what they
+  /// say since then may be far off.
   bool is_wide = false;
 };
 
@@ -62,6 +62,7 @@ struct TrackStep {
   std::size_t measurements = 0;     ///< numbers that were measured
   std::vector<std::size_t> dropped; ///< modes below e^-20 of the best
   std::vector<std::pair<std::size_t, std::size_t>> joined; ///< the first became part of the second
+  std::size_t spread = 0; ///< places that wide filters were spread over; 0: none was
   /// Light of the heaviest mode [band], its parts as it has them; empty without measurements.
   std::vector<double> i, q, u;
   std::size_t poses_lit = 0;
@@ -88,7 +89,8 @@ public:
 
 private:
   Result<void> learn(const ObservedCurve &epoch, TrackStep &out);
-  void look_for_width(double seconds);
+  void look_for_opening(double seconds);
+  Result<void> spread_wide(const CurveModel &model, TrackStep &out);
   void sort_by_weight(TrackStep &out);
   void settle(TrackStep &out);
   void drop_light(TrackStep &out);

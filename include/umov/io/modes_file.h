@@ -28,6 +28,7 @@ struct ModesFile {
 
 /// Reads ECSV or CSV with the columns weight, qw, qx, qy, qz, cov_xx ... cov_zz, and where the rate
 /// was asked for rate_x ... rate_z and cov_xwx ... cov_wzwz; scale is 1 where there is none.
+/// Units that the header tells must be those: none, rad2, deg / s, rad2 / s, rad2 / s2.
 /// BadInput with line for what is missing or no number, a quaternion that is not of length 1, a
 /// variance that is not above 0, and a table without a mode.
 Result<ModesFile> read_modes_text(std::string_view text, const std::string &file);

@@ -2,12 +2,33 @@
 
 #include "io/table/text_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/quantity.h>
+#include <umov/core/text.h>
 
 namespace umov {
 namespace {
+
+/// What a column is in; empty: a bare number.
+std::string_view unit_of(std::string_view name) {
+  if (name.starts_with("rate_"))
+    return "deg / s";
+  if (!name.starts_with("cov_"))
+    return "";
+  constexpr std::size_t of_axes = 4; // behind "cov_"
+  const auto rates = std::ranges::count(name.substr(of_axes), 'w');
+  return rates == 0 ? "rad2" : rates == 1 ? "rad2 / s" : "rad2 / s2";
+}
+
+/// The same but for blanks.
+bool is_unit(std::string told, std::string_view expected) {
+  std::erase(told, ' ');
+  std::string bare(expected);
+  std::erase(bare, ' ');
+  return told == bare;
+}
 
 /// Cells of one table by name.
 class ModesTable {
@@ -26,6 +47,12 @@ public:
                       "or track was expected",
                       name),
           {file_});
+    if (const auto told = table_.units.find(name);
+        told != table_.units.end() && !is_unit(told->second, unit_of(name)))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} is in \"{}\"; \"{}\" was expected, as umov invert writes it",
+                              name, printable(told->second), unit_of(name)),
+                  {file_});
     return number_in(table_, row, *column, -most, most, "a number", file_);
   }
   [[nodiscard]] Result<Quaternion> attitude(std::size_t row) const;

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Does the 95 % set hold 95 % of the truths? Short arcs, 8 to 15 epochs somewhere in a pass, of random attitudes, whose data are wrong by just what the
+search is told: photons, the floor (its part of I and half of it in q and u, and 1 % of the median I), zero points of 2 %. Light of the truth by rays on the mesh
+that is fitted, so that nothing else is wrong. Prints one line per curve, then the share of sets that hold the truth with its binomial interval (Clopper & Pearson 1934, 95 %).
+
+usage: coverage.py OBJECT CURVES [--snr 100] [--seed 1] [--floor 0.02] [--only CURVE] [--umov PATH] [--work DIR] [options of umov invert]
+OBJECT: as blind.py has them. Materials are taken for right unless the options say otherwise."""
+import argparse
+import itertools
+import math
+import pathlib
+import random
+import statistics
+import tempfile
+
+import blind
+
+KNOWN = ["--slope-sd", 0, "--reflectance-sd", 0, "--haze-sd", 0]
+ZERO_POINT_SD, OF_MEDIAN = 0.02, 0.01  # what umov invert takes them for
+DAY, FIRST_S, LAST_S = "2018-01-21", 5 * 3600 + 8 * 60, 5 * 3600 + 15 * 60  # of the pass of blind.py
+
+
+def clock(seconds):
+    return f"{DAY}T{int(seconds) // 3600:02d}:{int(seconds) // 60 % 60:02d}:{seconds % 60:06.3f}Z"
+
+
+def arc(rng):
+    """Begin, end and step [s] of 8 to 15 epochs."""
+    epochs, step = rng.randint(8, 15), rng.uniform(4, 12)
+    begin = rng.uniform(FIRST_S, LAST_S - epochs * step)
+    return begin, begin + (epochs - 0.5) * step, step
+
+
+def observed(rows, snr, floor, rng, path):
+    """A table as an observer has it whose model is wrong by `floor`: S/N is that of the mean I, dark epochs stand with their noise."""
+    lit = [r for r in rows if float(r["intensity"]) > 0]
+    unit = {r["band"]: 3.1 * float(r["I"]) / float(r["intensity"]) for r in lit}  # of what is dark: of another epoch
+    mean = {band: statistics.mean(float(r["intensity"]) for r in rows if r["band"] == band) for band in sorted(unit)}
+    median = statistics.median(float(r["intensity"]) for r in rows if r["band"] in unit)
+    gain = {band: 1 + ZERO_POINT_SD * rng.gauss(0, 1) for band in mean}
+    out = ["# pol_frame: equatorial", "time_utc,band,flux,flux_err,q,u,q_err,u_err"]
+    for r in (r for r in rows if r["band"] in unit):
+        true, m, scale = float(r["intensity"]), mean[r["band"]], unit[r["band"]]
+        if true > 0:
+            scale = 3.1 * float(r["I"]) / true
+        sd = math.sqrt((0.8 * true * m + 0.2 * m * m) / snr**2)
+        seen = gain[r["band"]] * (true * (1 + floor * rng.gauss(0, 1)) + OF_MEDIAN * median * rng.gauss(0, 1)) + sd * rng.gauss(0, 1)
+        cells = [r["time_utc"], r["band"], f"{scale * seen:.6e}", f"{scale * sd:.6e}", "", "", "", ""]
+        if true > 3 * sd and r["q"]:
+            e = math.sqrt(2) * sd / true
+            both = math.hypot(e, floor / 2)
+            cells[4:] = [f"{float(r['q']) + both * rng.gauss(0, 1):.6f}", f"{float(r['u']) + both * rng.gauss(0, 1):.6f}", f"{e:.6f}", f"{e:.6f}"]
+        out.append(",".join(cells))
+    path.write_text("\n".join(out) + "\n")
+
+
+def tail(n, k, p):
+    """Chance of k or more of n, each of chance p."""
+    if not 0 < p < 1:
+        return float(p >= 1 or k <= 0)
+    return sum(math.exp(math.lgamma(n + 1) - math.lgamma(j + 1) - math.lgamma(n - j + 1) + j * math.log(p) + (n - j) * math.log1p(-p)) for j in range(k, n + 1))
+
+
+def interval(n, k, outside=0.05):
+    """Shares of which k of n is neither too few nor too many."""
+    def where(is_low):
+        low, high = 0.0, 1.0
+        for _ in range(50):
+            middle = (low + high) / 2
+            low, high = (middle, high) if is_low(middle) else (low, middle)
+        return low
+    return (where(lambda p: tail(n, k, p) < outside / 2) if k else 0.0, where(lambda p: 1 - tail(n, k + 1, p) > outside / 2) if k < n else 1.0)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("object", choices=blind.MESH)
+    parser.add_argument("curves", type=int)
+    parser.add_argument("--snr", type=float, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--floor", type=float, default=0.02, help="error of the model, put in and told")
+    parser.add_argument("--only", type=int, help="of the curves, this one alone")
+    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
+    parser.add_argument("--work", type=pathlib.Path)
+    o, rest = parser.parse_known_args()
+    o.rest, o.surfaces, o.wrong, o.truth = [*KNOWN, "--floor", o.floor, *rest], 1, 0, None
+    work = o.work or pathlib.Path(tempfile.mkdtemp())
+    work.mkdir(parents=True, exist_ok=True)
+    mesh = work / f"{o.object}.obj"
+    blind.run(o.umov, "mesh", "make", *blind.MESH[o.object][0], "-o", mesh, "-q")
+    held, asked, shares = 0, 0, []
+    for curve in itertools.count() if o.only is None else [o.only]:
+        if asked == o.curves:
+            break
+        rng = random.Random(f"{o.seed} {o.object} {curve}")
+        truth, (begin, end, step) = blind.random_attitude(rng), arc(rng)
+        rows = blind.make_curve(o, work, [mesh, mesh], curve, blind.inertial(truth), step, rng, (clock(begin), clock(end)))
+        if not any(float(row["intensity"]) > 0 for row in rows):
+            continue  # no light at all: nothing was seen
+        observed(rows, o.snr, o.floor, rng, work / "obs.csv")
+        verdict, seconds = blind.asked(o, work, "pose")
+        same = blind.twins(truth, verdict["symmetries"])
+        best = min((blind.apart(t, verdict["modes"][0]["q"]) for t in same), default=180) if verdict["modes"] else 180
+        inside = blind.in_set(work / "answer/set95.ecsv", same)
+        asked, held = asked + 1, held + inside
+        shares.append(verdict["share_of_so3"])
+        print(f"{o.object} {curve}: {'in' if inside else 'OUT'}, best {best:.2f} deg off, {len(verdict['modes'])} modes, set {100 * shares[-1]:.2g} %, "
+              f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, floor {verdict['floor']:.3f}, {verdict['verdict']}, {len(rows) // 3} epochs, {seconds:.1f} s", flush=True)
+    low, high = interval(asked, held)
+    print(f"{o.object}, S/N {o.snr:g}, {asked} curves of seed {o.seed}: held {held} = {held / asked:.3f} ({low:.3f} to {high:.3f}); median set {100 * statistics.median(shares):.2g} % of all attitudes")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,128 @@
+#include "inverse/attitude_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <umov/core/parallel.h>
+#include <umov/core/quantity.h>
+#include <umov/inverse/attitude_grid.h>
+#include <utility>
+
+namespace umov::inverse {
+
+std::vector<double> neighbour_distances(const std::vector<PoseSample> &draws, std::size_t rank,
+                                        unsigned threads) {
+  std::vector<double> out(draws.size(), pi);
+  parallel_for(draws.size(), threads, [&](std::size_t k) {
+    std::vector<double> all;
+    for (const PoseSample &other : draws)
+      if (const double d = angle_between(draws[k].turning.attitude, other.turning.attitude);
+          d > 1e-7)
+        all.push_back(d);
+    if (all.size() < rank)
+      return;
+    const auto at = all.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+    std::nth_element(all.begin(), at, all.end());
+    out[k] = *at;
+  });
+  return out;
+}
+
+namespace {
+
+constexpr double held_share = 0.95;
+
+/// How large a ball may be: one standard deviation of the mode that its sample belongs to.
+double width_at(Quaternion attitude, std::span<const PoseMode> modes) {
+  double least = 1e300, width = 0;
+  for (const PoseMode &mode : modes)
+    if (const double d = angle_between(mode.turning.attitude, attitude) / mode.sd_rad();
+        d < least) {
+      least = d;
+      width = mode.sd_rad();
+    }
+  return width;
+}
+
+/// How many balls must grow by for one of another run to reach a sample, at most.
+double growth_to(const PoseSample &sample, std::size_t run, const std::vector<AttitudeBall> &set,
+                 const std::vector<std::size_t> &run_of) {
+  double least = most_growth;
+  const Quaternion q = sample.turning.attitude;
+  for (std::size_t j = 0; j < set.size(); ++j) {
+    if (run_of[j] == run)
+      continue;
+    const Quaternion p = set[j].attitude;
+    const double half_cos = std::abs(q.w * p.w + q.x * p.x + q.y * p.y + q.z * p.z);
+    // Most are too far to be asked how far.
+    if (half_cos > std::cos(std::min(least * set[j].radius_rad, pi) / 2))
+      least = std::min(least, angle_between(q, p) / set[j].radius_rad);
+  }
+  return least;
+}
+
+/// By how much balls must grow to hold 95 % of the weight of samples of other run_of.
+double growth_of(const std::vector<PoseSample> &samples, const std::vector<AttitudeBall> &set,
+                 const std::vector<std::size_t> &run_of, std::span<const std::size_t> runs) {
+  std::vector<std::pair<double, double>> all(samples.size()); // growth, weight
+  parallel_for(samples.size(), 0, [&](std::size_t k) {
+    all[k] = {growth_to(samples[k], runs.empty() ? k : runs[k], set, run_of), samples[k].weight};
+  });
+  std::ranges::stable_sort(all, {}, &std::pair<double, double>::first);
+  double held = 0;
+  for (const auto &[growth, weight] : all)
+    if ((held += weight) >= held_share)
+      return std::max(growth, 1.0);
+  return 1;
+}
+
+} // namespace
+
+AttitudeSet highest_density(const std::vector<PoseSample> &samples,
+                                          std::span<const PoseMode> modes,
+                            std::span<const std::size_t> runs) {
+  std::vector<std::size_t> order(samples.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return samples[k].minus_2_log; });
+  double sum = 0;
+  std::size_t count = 0;
+  std::vector<PoseSample> inside;
+  while (count < order.size() && sum < held_share) {
+    inside.push_back(samples[order[count++]]);
+    sum += inside.back().weight;
+  }
+  const auto apart =
+      neighbour_distances(inside, std::min<std::size_t>(4, std::max<std::size_t>(count, 2) - 1), 0);
+  std::vector<double> sorted = apart;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  AttitudeSet out;
+  std::vector<std::size_t> run_of;
+  for (std::size_t k = 0; k < inside.size(); ++k) {
+    const Quaternion q = inside[k].turning.attitude;
+    const double largest = modes.empty() ? 3 * *middle : width_at(q, modes);
+    if (!out.balls.empty() && angle_between(q, out.balls.back().attitude) <= 1e-7)
+      continue;
+    out.balls.push_back({q, std::min(apart[k], largest)});
+    run_of.push_back(runs.empty() ? order[k] : runs[order[k]]);
+  }
+  const bool has_others = std::ranges::any_of(run_of, [&](auto run) { return run != run_of[0]; });
+  out.growth = has_others ? growth_of(samples, out.balls, run_of, runs) : 1;
+  for (AttitudeBall &ball : out.balls)
+    ball.radius_rad = std::min(ball.radius_rad * out.growth, pi);
+  return out;
+}
+
+double share_of(std::span<const AttitudeBall> set) {
+  double out = 0;
+  for (const AttitudeBall &ball : set) {
+    // Each place counts once: a ball's volume over the number of balls that hold its centre.
+    double holders = 0;
+    for (const AttitudeBall &other : set)
+      holders += angle_between(ball.attitude, other.attitude) <= other.radius_rad ? 1 : 0;
+    out += share_within(ball.radius_rad) / std::max(holders, 1.0);
+  }
+  return std::min(out, 1.0);
+}
+
+} // namespace umov::inverse
