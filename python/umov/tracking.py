@@ -31,7 +31,9 @@ def _start_of(start: Any) -> Iterator[str]:
         if start.state:
             (pathlib.Path(folder) / "state.json").write_text(start.state, encoding="utf-8")
         else:
-            start.tables["modes"].write(pathlib.Path(folder) / "modes.ecsv")
+            for name in ("modes", "samples"):
+                if name in start.tables:
+                    start.tables[name].write(pathlib.Path(folder) / f"{name}.ecsv")
         yield folder
 
 

@@ -78,8 +78,7 @@ double growth_of(const std::vector<PoseSample> &samples, const std::vector<Attit
 
 } // namespace
 
-AttitudeSet highest_density(const std::vector<PoseSample> &samples,
-                                          std::span<const PoseMode> modes,
+AttitudeSet highest_density(const std::vector<PoseSample> &samples, std::span<const PoseMode> modes,
                             std::span<const std::size_t> runs) {
   std::vector<std::size_t> order(samples.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -106,6 +105,7 @@ AttitudeSet highest_density(const std::vector<PoseSample> &samples,
     out.balls.push_back({q, std::min(apart[k], largest)});
     run_of.push_back(runs.empty() ? order[k] : runs[order[k]]);
   }
+  out.level = inside.back().minus_2_log;
   const bool has_others = std::ranges::any_of(run_of, [&](auto run) { return run != run_of[0]; });
   out.growth = has_others ? growth_of(samples, out.balls, run_of, runs) : 1;
   for (AttitudeBall &ball : out.balls)

@@ -15,6 +15,7 @@ std::vector<double> neighbour_distances(const std::vector<PoseSample> &draws, st
 struct AttitudeSet {
   std::vector<AttitudeBall> balls; ///< it is their union
   double growth = 1;               ///< what they were widened by
+  double level = 0;                ///< -2 ln likelihood of the least likely sample among them
 };
 /// What balls are widened by at most.
 inline constexpr double most_growth = 3;
@@ -22,11 +23,10 @@ inline constexpr double most_growth = 3;
 /// the distance to the fourth neighbour, but no larger than its mode is wide, or, without modes,
 /// than three times the median ball (lone samples have their neighbours in other places). All are
 /// widened, up to `most_growth`, until balls around other samples hold 95 % of the weight: what a
-/// set leaves out of samples that it was not made of it leaves out of the posterior. `runs`: samples
-/// of one know of each other, and do not count as others; empty: each is one by itself. One run
-/// alone stays as it is.
-AttitudeSet highest_density(const std::vector<PoseSample> &samples,
-                            std::span<const PoseMode> modes,
+/// set leaves out of samples that it was not made of it leaves out of the posterior. `runs`:
+/// samples of one know of each other, and do not count as others; empty: each is one by itself. One
+/// run alone stays as it is.
+AttitudeSet highest_density(const std::vector<PoseSample> &samples, std::span<const PoseMode> modes,
                             std::span<const std::size_t> runs = {});
 /// Share of SO(3) that a union of balls takes.
 double share_of(std::span<const AttitudeBall> set);

@@ -98,6 +98,7 @@ bool try_steps(const CurveModel &model, const CurveLikelihood &likelihood,
     if (std::log(coin) < power * (s.minus_2_log - compared[j].minus_2_log) / 2) {
       s.turning = tried[j];
       s.minus_2_log = compared[j].minus_2_log;
+      s.scale = compared[j].scale;
     }
   }
   return true;
@@ -165,7 +166,8 @@ Samples one_run(const CurveModel &model, const CurveLikelihood &likelihood,
     return {};
   Samples out;
   for (std::size_t k = 0; k < begin.size(); ++k)
-    out.draws.push_back({begin[k], 1 / static_cast<double>(begin.size()), compared[k].minus_2_log});
+    out.draws.push_back({begin[k], 1 / static_cast<double>(begin.size()), compared[k].minus_2_log,
+                         compared[k].chi2, compared[k].scale});
   double power = 0;
   for (std::uint32_t level = 0; power < 1; ++level) {
     const double next = next_power(out.draws, power, static_cast<double>(options.samples) / 2);
@@ -197,6 +199,7 @@ bool reweigh(const CurveModel &model, const CurveLikelihood &likelihood, unsigne
     log_weights.push_back(std::log(s.weight) + (s.minus_2_log - compared[k].minus_2_log) / 2);
     s.minus_2_log = compared[k].minus_2_log;
     s.chi2 = compared[k].chi2;
+    s.scale = compared[k].scale;
   }
   samples.log_evidence += normalize(samples.draws, log_weights);
   return true;
@@ -212,8 +215,7 @@ Samples pooled(const std::vector<Samples> &runs) {
       out.runs.push_back(r);
       log_weights.push_back(runs[r].log_evidence + std::log(s.weight));
     }
-  out.log_evidence =
-      normalize(out.draws, log_weights) - std::log(static_cast<double>(runs.size()));
+  out.log_evidence = normalize(out.draws, log_weights) - std::log(static_cast<double>(runs.size()));
   return out;
 }
 
@@ -243,13 +245,13 @@ Samples sample_all(const CurveModel &quick, const CurveModel &last,
 }
 
 void add_lost(const Samples &peaks, Samples &particles) {
-  const auto set = highest_density(particles.draws, {}, particles.runs).balls;
+  const AttitudeSet set = highest_density(particles.draws, {}, particles.runs);
   std::vector<double> log_weights;
   for (const PoseSample &s : particles.draws)
     log_weights.push_back(particles.log_evidence + std::log(s.weight));
   std::size_t next = 1 + *std::ranges::max_element(particles.runs);
   for (const PoseSample &s : peaks.draws)
-    if (s.weight > 0 && !is_in(set, s.turning.attitude)) {
+    if (s.weight > 0 && s.minus_2_log <= set.level && !is_in(set.balls, s.turning.attitude)) {
       particles.draws.push_back(s);
       particles.runs.push_back(next++);
       log_weights.push_back(peaks.log_evidence + std::log(s.weight));

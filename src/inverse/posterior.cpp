@@ -213,6 +213,7 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
       out.draws[k].turning = drawn[k];
       out.draws[k].minus_2_log = compared[k].minus_2_log;
       out.draws[k].chi2 = compared[k].chi2;
+      out.draws[k].scale = compared[k].scale;
       log_weight[k] = -compared[k].minus_2_log / 2 - log_density(mixture, drawn[k], span);
     });
     out.log_evidence = normalize(out.draws, log_weight) -

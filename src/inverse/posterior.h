@@ -33,8 +33,8 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
 /// They are followed by `quick` light and weighted by that of `last`.
 Samples sample_all(const CurveModel &quick, const CurveModel &last,
                    const CurveLikelihood &likelihood, const SearchOptions &options);
-/// Particles with what they lost of peaks: draws around these that lie out of the particles' set
-/// count as they do among the peaks' own.
+/// Particles with what they lost of peaks: draws around these that are as likely as the particles'
+/// set but lie out of it count as they do among the peaks' own.
 void add_lost(const Samples &peaks, Samples &particles);
 
 } // namespace umov::inverse

@@ -211,6 +211,7 @@ Result<void> AttitudeBank::spread_wide(const CurveModel &model, TrackStep &out) 
     return tl::unexpected(inverse::stopped());
   out.poses_lit += asked.size();
   out.spread = places.size();
+  memory_.was_spread = true;
   keep_likely(places);
   std::vector<TrackMode> all;
   std::vector<bool> is_named(modes_.size(), false);

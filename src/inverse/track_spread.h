@@ -9,9 +9,9 @@ namespace umov::inverse {
 inline constexpr double wide_rad = 0.14;
 
 /// A belief as narrow ones with their weights, on a grid along the principal axes of its attitude
-/// out to three standard deviations: normals of 4 deg (wider where they would be more than 8000, or covariances of 2.5 million
-/// numbers)
-/// that stand 1.5 of it apart. What else is unknown moves along as it goes with the attitude.
+/// out to three standard deviations: normals of 4 deg (wider where they would be more than 8000, or
+/// covariances of 2.5 million numbers) that stand 1.5 of it apart. What else is unknown moves along
+/// as it goes with the attitude.
 class SpreadBelief {
 public:
   explicit SpreadBelief(const Belief &belief);

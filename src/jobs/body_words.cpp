@@ -58,9 +58,9 @@ std::map<std::string, std::string> by_group(const std::string &materials) {
 BodyWords body_words(const Scene &scene) {
   BodyWords out;
   constexpr std::size_t digits = 12;
-  out.mesh = fmt::format("{}, {:.4g} m across, sha256 {}",
-                         counted(scene.mesh.triangles.size(), "facet"), size_of(scene.mesh),
-                         sha256_hex(mesh_text(scene)).substr(0, digits));
+  out.mesh =
+      fmt::format("{}, {:.4g} m across, sha256 {}", counted(scene.mesh.triangles.size(), "facet"),
+                  size_of(scene.mesh), sha256_hex(mesh_text(scene)).substr(0, digits));
   for (std::size_t g = 0; g < scene.mesh.groups.size(); ++g) {
     const std::string front = material_words(scene.front[g].material()),
                       back = material_words(scene.back[g].material());

@@ -47,7 +47,7 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                 {"twins", twins_table(answer, symmetries)},
                 {"fit", fit_table(observed, model, answer)}};
   note_start(out.tables.front().table, body_words(ready.light.model().scene()), observed, answer,
-             judgement.verdict);
+             judgement);
   out.page =
       inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer, out.summary);
   out.inputs = observed.inputs;

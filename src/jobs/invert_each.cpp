@@ -21,7 +21,7 @@ namespace {
 /// Its column `curve` first; notes that are of one answer alone are left out.
 Table of_curve(const std::string &curve, const Table &table) {
   const std::string_view own[] = {"share_of_so3", epoch_note,   until_note, median_note,
-                                  floor_note,     verdict_note, unit_note};
+                                  floor_note,     verdict_note, doubt_note, unit_note};
   Table out;
   for (const auto &[key, value] : table.notes())
     if (std::ranges::find(own, key) == std::end(own))

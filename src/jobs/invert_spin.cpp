@@ -192,7 +192,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                 {"samples", samples_table(answer.pose, true)},
                 {"fit", fit_table(ready.observed, model, answer.pose)}};
   note_start(out.tables.front().table, body_words(ready.light.model().scene()), ready.observed,
-             answer.pose, judgement.verdict);
+             answer.pose, judgement);
   out.page = inversion_page("Which spin: " + scenario.title, out.tables[4].table, answer.pose,
                             out.summary);
   out.inputs = ready.observed.inputs;

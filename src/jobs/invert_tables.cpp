@@ -64,7 +64,7 @@ void add_attitude_columns(Table &table, const std::vector<Quaternion> &attitudes
 }
 
 void note_start(Table &modes, const BodyWords &body, const ObservedLightCurve &observed,
-                const PoseAnswer &answer, Verdict verdict) {
+                const PoseAnswer &answer, const Judgement &judgement) {
   modes.note(mesh_note, body.mesh);
   modes.note(materials_note, body.materials);
   modes.note(unit_note, unit_of_light(observed.curve.is_absolute));
@@ -72,7 +72,9 @@ void note_start(Table &modes, const BodyWords &body, const ObservedLightCurve &o
   modes.note(until_note, to_iso_exact(observed.geometry.back().time));
   modes.note(median_note, fmt::format("{}", inverse::median_of_i(observed.curve)));
   modes.note(floor_note, fmt::format("{}", answer.errors.floor));
-  modes.note(verdict_note, name_of(verdict));
+  modes.note(verdict_note, name_of(judgement.verdict));
+  if (is_wide_alone(answer, observed.curve, judgement))
+    modes.note(doubt_note, width_alone);
 }
 
 Table modes_table(const PoseAnswer &answer, bool has_rates) {
@@ -126,10 +128,11 @@ Table set_table(const PoseAnswer &answer) {
 
 Table samples_table(const PoseAnswer &answer, bool has_rates) {
   Table out;
-  Numbers weight, minus_2_log;
+  Numbers weight, minus_2_log, scale;
   for (const PoseSample &s : answer.samples) {
     weight.push_back(s.weight);
     minus_2_log.push_back(s.minus_2_log);
+    scale.push_back(s.scale);
   }
   out.add("weight", "", "they add up to 1", std::move(weight));
   add_attitudes(out, answer.samples, [](const PoseSample &s) { return s.turning.attitude; });
@@ -137,6 +140,7 @@ Table samples_table(const PoseAnswer &answer, bool has_rates) {
     add_rates(out, answer.samples);
   out.add("minus_2_log", "", "-2 ln likelihood, without constants of the data",
           std::move(minus_2_log));
+  out.add("scale", "", "observed over model", std::move(scale));
   note(out);
   return out;
 }

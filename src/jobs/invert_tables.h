@@ -9,17 +9,23 @@
 
 namespace umov::jobs {
 
+struct Judgement;
+
 /// modes.ecsv; with rates where they were free.
 Table modes_table(const PoseAnswer &answer, bool has_rates);
 /// What `umov invert track` needs to know of modes: of which body they are, when they hold, up to
 /// when they had data, how bright those are and in which unit, the floor and the verdict that they
 /// rest on.
 void note_start(Table &modes, const BodyWords &body, const ObservedLightCurve &observed,
-                const PoseAnswer &answer, Verdict verdict);
+                const PoseAnswer &answer, const Judgement &judgement);
 /// Keys of those notes, which are of one answer alone.
 inline constexpr const char *epoch_note = "epoch_utc", *until_note = "data_until_utc",
                             *median_note = "median_intensity", *floor_note = "floor",
-                            *verdict_note = "search_verdict", *unit_note = "light_unit";
+                            *verdict_note = "search_verdict", *doubt_note = "search_doubt",
+                            *unit_note = "light_unit";
+/// Of a search that is undetermined because many attitudes fit, and for nothing else: its samples
+/// are the posterior.
+inline constexpr const char *width_alone = "width alone";
 /// Keys of those that are of all answers about a body.
 inline constexpr const char *mesh_note = "object_mesh", *materials_note = "object_materials";
 /// What I is in: known only where the light is absolute.
@@ -78,6 +84,9 @@ struct Judgement {
   std::optional<double> light_between; ///< `share_between` of the best attitude, if it was asked
   bool is_between_fitted = false;      ///< the search had that light
 };
+/// An answer is undetermined because its posterior is wide, and for nothing else that is known.
+bool is_wide_alone(const PoseAnswer &answer, const ObservedCurve &curve,
+                   const Judgement &judgement);
 /// All of it, of an answer.
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
                 const std::vector<BodySymmetry> &symmetries);

@@ -115,6 +115,17 @@ std::optional<double> chance_of_bad_fit(const PoseAnswer &answer, const CurveErr
   return chance < unlikely ? std::optional(chance) : std::nullopt;
 }
 
+bool is_wide_alone(const PoseAnswer &answer, const ObservedCurve &curve,
+                   const Judgement &judgement) {
+  constexpr double few = 20, other = 2.5, least = 0.005; // as in the verdict
+  const double floor = std::max(answer.errors.floor, least);
+  const bool is_direct =
+      judgement.is_between_fitted || judgement.light_between.value_or(0) < other * floor;
+  return judgement.verdict == Verdict::Undetermined && answer.is_broad && answer.effective >= few &&
+         is_direct && answer.model_error < other * floor &&
+         !chance_of_bad_fit(answer, answer.errors) && !is_steady(curve, answer.errors);
+}
+
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
                 const std::vector<BodySymmetry> &symmetries) {
   const ObservedCurve &curve = model.curve();

@@ -140,10 +140,25 @@ std::string flaw_of(const TrackMode &mode, const TrackFrame &frame) {
   return {};
 }
 
-Result<TrackStart> start_of_modes(const std::string &text, const std::string &path,
-                                  const TrackFrame &frame, double rate_sd,
-                                  Diagnostics &diagnostics) {
-  UMOV_ASSIGN(file, read_modes_text(text, path));
+/// The posterior of a search whose modes do not describe it.
+Result<void> take_samples(const TrackStartFile &from, const TrackFrame &frame, double rate_sd,
+                          TrackStart &out) {
+  UMOV_ASSIGN(rows, read_samples_text(from.samples, from.samples_path));
+  std::vector<PoseSample> samples;
+  for (const SampleRow &row : rows)
+    samples.push_back({{row.attitude, {}}, row.weight, 0, 0, row.scale});
+  out.modes = track_modes_around(std::move(samples), rate_sd, frame.is_absolute, frame.bands.size(),
+                                 frame.parts, frame.errors);
+  out.searched = name_of(Verdict::Ambiguous); // all that it allows is followed
+  out.memory.was_spread = true;
+  out.inputs.push_back({from.samples_path, sha256_hex(from.samples)});
+  return {};
+}
+
+Result<TrackStart> start_of_modes(const TrackStartFile &from, const TrackFrame &frame,
+                                  double rate_sd, Diagnostics &diagnostics) {
+  const std::string &path = from.path;
+  UMOV_ASSIGN(file, read_modes_text(from.text, path));
   TrackStart out;
   UMOV_ASSIGN(epoch, time_of(file, path, epoch_note));
   UMOV_ASSIGN(until, time_of(file, path, until_note));
@@ -155,6 +170,12 @@ Result<TrackStart> start_of_modes(const std::string &text, const std::string &pa
   out.median_i = median;
   out.floor = floor;
   out.searched = searched;
+  const auto doubt = file.notes.find(doubt_note);
+  if (!from.samples.empty() && !file.has_rates && doubt != file.notes.end() &&
+      doubt->second == width_alone) {
+    UMOV_TRY(take_samples(from, frame, rate_sd, out));
+    return out;
+  }
   for (const ModesRow &row : file.rows) {
     const auto covariance = file.has_rates ? row.covariance : with_rate(row.covariance, rate_sd);
     TrackMode mode = track_mode({row.attitude, row.rate_rad_s}, covariance, row.scale,
@@ -270,6 +291,7 @@ Result<TrackStart> start_of_state(const std::string &text, const std::string &pa
     out.memory.misses = count_at(all, "misses");
     out.memory.next_number = count_at(all, "next_number");
     all.at("is_wide").get_to(out.memory.is_wide);
+    all.at("was_spread").get_to(out.memory.was_spread);
     all.at("missed_utc").get_to(out.missed_utc);
     for (const json &one : all.at("modes"))
       out.modes.push_back(mode_of(one));
@@ -291,10 +313,11 @@ Result<TrackStartFile> open_track_start(const std::string &path) {
     return fail(ErrorCode::Usage,
                 "--start is missing: a tracking follows attitudes that are known by then. Name the "
                 "folder of an answer of umov invert pose or spin about the first observations");
-  fs::path file = path;
+  fs::path file = path, samples;
   std::error_code none;
   if (fs::is_directory(file, none)) {
     const fs::path state = file / "state.json";
+    samples = file / "samples.ecsv";
     file = fs::exists(state, none) ? state : file / "modes.ecsv";
     if (!fs::exists(file, none))
       return fail(
@@ -304,14 +327,20 @@ Result<TrackStartFile> open_track_start(const std::string &path) {
           {path});
   }
   UMOV_ASSIGN(text, read_file(file));
-  return TrackStartFile{file.string(), std::move(text)};
+  TrackStartFile out{file.string(), std::move(text)};
+  if (!samples.empty() && fs::exists(samples, none)) {
+    UMOV_ASSIGN(rows, read_file(samples));
+    out.samples_path = samples.string();
+    out.samples = std::move(rows);
+  }
+  return out;
 }
 
 Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
                                     double rate_sd, Diagnostics &diagnostics) {
   const bool is_state = file.text.starts_with('{');
   UMOV_ASSIGN(out, is_state ? start_of_state(file.text, file.path, frame)
-                            : start_of_modes(file.text, file.path, frame, rate_sd, diagnostics));
+                            : start_of_modes(file, frame, rate_sd, diagnostics));
   if (out.searched == name_of(Verdict::NoFit))
     return fail(ErrorCode::BadInput,
                 "the search or tracking that it began with explains nothing (no_fit): there is no "
@@ -358,6 +387,7 @@ std::string state_json(const TrackStart &state, const TrackFrame &frame, TrackLo
   out["missed_utc"] = state.missed_utc;
   out["next_number"] = state.memory.next_number;
   out["is_wide"] = state.memory.is_wide;
+  out["was_spread"] = state.memory.was_spread;
   if (loss != TrackLoss::None)
     out["lost_because"] = loss == TrackLoss::Misfit ? "misfit" : "open";
   ordered_json modes = ordered_json::array();

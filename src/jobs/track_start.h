@@ -36,14 +36,17 @@ struct TrackFrame {
 /// A start as it was read.
 struct TrackStartFile {
   std::string path, text;
+  std::string samples_path = {}, samples = {}; ///< beside modes.ecsv in a folder; may be empty
 };
 /// The state.json or modes.ecsv of an answer's folder, or such a file. Usage where nothing is
 /// named, BadInput for a folder that has neither; before any work is done.
 Result<TrackStartFile> open_track_start(const std::string &path);
 /// What it says. Attitudes of `pose` hold until its data end, and their rate is 0 to `rate_sd`
-/// [rad/s]; those of `spin` have turned until then. BadInput for what is no such answer, one about
-/// another body or light of another unit, a state of other bands or materials' errors, and one
-/// without an attitude to be followed. Warns of modes that do not say what they are of.
+/// [rad/s]; those of `spin` have turned until then. A search of fixed attitudes that is
+/// undetermined by its width alone is taken up by its samples, where they are there. BadInput for
+/// what is no such answer, one about another body or light of another unit, a state of other bands
+/// or materials' errors, and one without an attitude to be followed. Warns of modes that do not say
+/// what they are of.
 Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
                                     double rate_sd, Diagnostics &diagnostics);
 /// BadInput where light of no unit is a thousand times as bright as that of the start, or as faint:

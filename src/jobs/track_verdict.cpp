@@ -50,6 +50,13 @@ void note_doubts(const TrackStart &now, const TrackHistory &history, const PoseA
     out.notes.emplace_back(
         "the light bent more than filters have room for: what they say since then may be far off; "
         "search anew with the later observations");
+  if (now.memory.was_spread && out.verdict == Verdict::Determined) {
+    out.verdict = Verdict::Ambiguous;
+    out.notes.emplace_back(
+        "the attitude was open to more than 8 deg before some of the data, and was followed from a "
+        "grid: a filter beside the true one can be led to a wrong place that fits. Ask umov invert "
+        "pose or spin of all observations to be sure");
+  }
   if (now.searched == name_of(Verdict::Undetermined))
     out.notes.emplace_back("the search that it began with was undetermined, as its own notes say: "
                            "attitudes that its modes leave out are not followed");

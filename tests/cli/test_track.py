@@ -345,6 +345,26 @@ def test_a_start_that_does_not_say_its_body_is_taken_with_a_warning(made):
     assert data(made / "unsaid/track.ecsv") == data(made / "answer/track.ecsv")
 
 
+def test_a_start_that_allows_much_is_followed_by_its_samples(made):
+    """Ten epochs leave 1 % of all attitudes, of which modes say little: the whole posterior goes on. The answer is not called sure."""
+    head, epochs = epochs_of(made / "obs.csv")
+    write_epochs(made / "few.csv", head, epochs[:10])
+    done = call(made, "invert", "pose", "few.csv", "--scenario", "fit.toml", "--grid", "20000", *KNOWN, "-o", "few", "--json")
+    assert done.code == 0, done.err
+    assert json.loads(done.out)["verdict"] == "undetermined"
+    assert "search_doubt: width alone" in (made / "few/modes.ecsv").read_text().replace('"', "")
+    done = track(made, "obs.csv", "--rate-sd", "0.001", "--json", start="few", out="from_few")
+    assert done.code == 0, done.err
+    verdict = json.loads(done.out)
+    best = verdict["modes"][0]
+    assert apart(TRUTH, best["q"]) < 4 * best["sd_deg"] and best["sd_deg"] < 3
+    assert verdict["verdict"] == "ambiguous" and verdict["heaviest"] > 0.95
+    assert any("followed from a grid" in note for note in verdict["notes"])
+    # Without the samples its modes are all there is, and they leave attitudes out.
+    done = track(made, "obs.csv", "--rate-sd", "0.001", "--json", start="few/modes.ecsv", out="from_modes")
+    assert json.loads(done.out)["verdict"] == "undetermined"
+
+
 def test_counts_are_followed(made, tmp_path):
     """As umov observe records them, each channel by itself; data by rays and the simulator's own noise. The start has the first half."""
     shutil.copy(made / "cubesat.obj", tmp_path)

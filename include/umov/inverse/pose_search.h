@@ -45,6 +45,7 @@ struct PoseSample {
   Turning turning;
   double weight = 0; ///< they add up to 1
   double minus_2_log = 0, chi2 = 0;
+  double scale = 1; ///< observed over model
 };
 
 /// One ball of a set of attitudes.

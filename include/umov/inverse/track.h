@@ -4,6 +4,7 @@
 
 #include <umov/core/result.h>
 #include <umov/inverse/curve_model.h>
+#include <umov/inverse/pose_search.h>
 #include <utility>
 
 namespace umov {
@@ -37,6 +38,14 @@ struct TrackMode {
 TrackMode track_mode(const Turning &turning, const std::vector<double> &covariance, double scale,
                      bool is_absolute, std::size_t bands, const std::vector<PartKind> &parts,
                      const CurveErrors &errors);
+/// Filters of fixed attitudes that are known by samples of their posterior, where these are no few
+/// peaks: one around each, half as wide as four neighbours lie apart, of the heaviest 4000 or those
+/// that hold all but a thousandth; heaviest first. The rate about each axis is 0 to `rate_sd`
+/// [rad/s].
+std::vector<TrackMode> track_modes_around(std::vector<PoseSample> samples, double rate_sd,
+                                          bool is_absolute, std::size_t bands,
+                                          const std::vector<PartKind> &parts,
+                                          const CurveErrors &errors);
 /// The same turning later, its rate constant but for a random walk (`TrackOptions::rate_noise`).
 TrackMode turned_on(const TrackMode &mode, double seconds, double rate_noise);
 
@@ -54,6 +63,8 @@ struct TrackMemory {
   /// The light of some epoch bent, or left open, more than there is room for in filters: what they
   /// say since then may be far off.
   bool is_wide = false;
+  /// Filters were wide once, and spread over narrow ones: that of the truth may have been led away.
+  bool was_spread = false;
 };
 
 /// What a bank made of an epoch.

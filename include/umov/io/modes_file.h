@@ -33,4 +33,13 @@ struct ModesFile {
 /// variance that is not above 0, and a table without a mode.
 Result<ModesFile> read_modes_text(std::string_view text, const std::string &file);
 
+/// A draw of a posterior, as a table of samples has it.
+struct SampleRow {
+  double weight = 0, scale = 1;
+  Quaternion attitude; ///< body_from_gcrs, of length 1
+};
+/// Reads samples.ecsv of fixed attitudes: the columns weight, qw, qx, qy, qz and scale; those with
+/// a weight above 0, which add up to 1 here. BadInput as above.
+Result<std::vector<SampleRow>> read_samples_text(std::string_view text, const std::string &file);
+
 } // namespace umov

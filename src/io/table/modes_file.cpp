@@ -139,4 +139,28 @@ Result<ModesFile> read_modes_text(std::string_view text, const std::string &file
   return out;
 }
 
+Result<std::vector<SampleRow>> read_samples_text(std::string_view text, const std::string &file) {
+  UMOV_ASSIGN(table, read_text_table(text, file));
+  const ModesTable cells(table, file);
+  std::vector<SampleRow> out;
+  double sum = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    UMOV_ASSIGN(weight, cells.number(row, "weight"));
+    UMOV_ASSIGN(scale, cells.number(row, "scale"));
+    UMOV_ASSIGN(attitude, cells.attitude(row));
+    if (!(weight > 0) || !(scale > 0))
+      continue;
+    sum += weight;
+    out.push_back({weight, scale, attitude});
+  }
+  if (out.empty())
+    return fail(ErrorCode::BadInput,
+                "no sample has a weight and a scale above 0; samples.ecsv of umov invert pose was "
+                "expected",
+                {file});
+  for (SampleRow &row : out)
+    row.weight /= sum;
+  return out;
+}
+
 } // namespace umov
