@@ -27,7 +27,8 @@ std::vector<TrackMode> track_modes_around(std::vector<PoseSample> samples, doubl
     return out;
   // As of the balls of a set: four neighbours lie within, lone ones have theirs in other places.
   constexpr std::size_t fourth = 4;
-  auto apart = inverse::neighbour_distances(samples, std::min(fourth, std::max<std::size_t>(kept, 2) - 1), 0);
+  auto apart = inverse::neighbour_distances(
+      samples, std::min(fourth, std::max<std::size_t>(kept, 2) - 1), 0);
   std::vector<double> sorted = apart;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(kept / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
