@@ -11,7 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   frame.bands = {"nm:550"};
   frame.parts = {{"white", 0.1, 0}};
   const std::string text(fuzz::text_of(data, size));
-  const auto read = jobs::read_track_start({"input", text}, frame, 0.1);
+  Diagnostics diagnostics;
+  const auto read = jobs::read_track_start({"input", text}, frame, 0.1, diagnostics);
   if (!fuzz::is_read(read))
     return 0;
   fuzz::require(!read->modes.empty(), "there is a mode");
@@ -30,8 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     return 0;
   const std::string written =
       jobs::state_json(*read, frame, TrackLoss::None, jobs::Verdict::Determined);
-  const auto again =
-      fuzz::must(jobs::read_track_start({"input", written}, frame, 0.1), "what is written is read");
+  const auto again = fuzz::must(
+      jobs::read_track_start({"input", written}, frame, 0.1, diagnostics), "what is written is read");
   fuzz::require(jobs::state_json(again, frame, TrackLoss::None, jobs::Verdict::Determined) ==
                     written,
                 "a state comes back as it was");

@@ -48,11 +48,13 @@ json state() {
           {"missed_utc", ""},
           {"next_number", 3},
           {"is_wide", false},
+          {"was_spread", false},
           {"modes", modes}};
 }
 
 Result<TrackStart> read(const std::string &text) {
-  return read_track_start({"state.json", text}, frame(), 0.1);
+  Diagnostics diagnostics;
+  return read_track_start({"state.json", text}, frame(), 0.1, diagnostics);
 }
 
 TEST(TrackStart, AStateComesBackAsItWasWritten) {
