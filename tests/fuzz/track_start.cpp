@@ -31,8 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     return 0;
   const std::string written =
       jobs::state_json(*read, frame, TrackLoss::None, jobs::Verdict::Determined);
-  const auto again = fuzz::must(
-      jobs::read_track_start({"input", written}, frame, 0.1, diagnostics), "what is written is read");
+  const auto again = fuzz::must(jobs::read_track_start({"input", written}, frame, 0.1, diagnostics),
+                                "what is written is read");
   fuzz::require(jobs::state_json(again, frame, TrackLoss::None, jobs::Verdict::Determined) ==
                     written,
                 "a state comes back as it was");
