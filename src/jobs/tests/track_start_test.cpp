@@ -49,6 +49,7 @@ json state() {
           {"next_number", 3},
           {"is_wide", false},
           {"was_spread", false},
+          {"light_unit", "relative"},
           {"modes", modes}};
 }
 
