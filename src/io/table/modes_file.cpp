@@ -50,8 +50,8 @@ public:
     if (const auto told = table_.units.find(name);
         told != table_.units.end() && !is_unit(told->second, unit_of(name)))
       return fail(ErrorCode::BadInput,
-                  fmt::format("{} is in \"{}\"; \"{}\" was expected, as answers have it",
-                              name, printable(told->second), unit_of(name)),
+                  fmt::format("{} is in \"{}\"; \"{}\" was expected, as answers have it", name,
+                              printable(told->second), unit_of(name)),
                   {file_});
     return number_in(table_, row, *column, -most, most, "a number", file_);
   }
