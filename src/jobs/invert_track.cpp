@@ -163,6 +163,22 @@ Table last_modes(const PoseAnswer &answer, const TrackStart &now, const TrackFra
   return out;
 }
 
+/// Rows that the start has learnt from; BadInput if there are no others.
+Result<std::size_t> rows_until(const Epoch<Utc> &time, const ObservedLightCurve &observed,
+                               const std::string &file) {
+  const auto &geometry = observed.geometry;
+  std::size_t out = 0;
+  while (out < geometry.size() && seconds_between(told(geometry[out].time), time) <= 0)
+    ++out;
+  if (out == geometry.size())
+    return fail(ErrorCode::BadInput,
+                fmt::format("no observation is later than {}, up to which the start has its own "
+                            "data; later ones are what is followed",
+                            to_iso(time)),
+                {file});
+  return out;
+}
+
 } // namespace
 
 Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &request,
@@ -181,17 +197,9 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
   UMOV_ASSIGN(now, read_track_start(start, frame, track.rate_sd * rad_per_deg, diagnostics));
   frame.errors.median_i = now.median_i;
   frame.errors.floor = now.floor = std::max(request.errors.floor, now.floor);
-  const auto &geometry = ready.observed.geometry;
-  std::size_t before = 0;
-  while (before < geometry.size() && seconds_between(told(geometry[before].time), now.time) <= 0)
-    ++before;
-  if (before == geometry.size())
-    return fail(ErrorCode::BadInput,
-                fmt::format("no observation is later than {}, up to which the start has its own "
-                            "data; later ones are what is followed",
-                            to_iso(now.time)),
-                {request.observations.front()});
-  ObservedLightCurve observed = part_of(ready.observed, before, geometry.size() - before);
+  UMOV_ASSIGN(before, rows_until(now.time, ready.observed, request.observations.front()));
+  ObservedLightCurve observed =
+      part_of(ready.observed, before, ready.observed.geometry.size() - before);
   UMOV_TRY(check_brightness(start, frame, now.median_i, inverse::median_of_i(observed.curve)));
   const bool is_quick = request.method == LightMethod::Masks;
   const auto light = is_quick ? followed_lighting(ready, options.threads, monitor)

@@ -145,6 +145,7 @@ Result<void> take_samples(const TrackStartFile &from, const TrackFrame &frame, d
                           TrackStart &out) {
   UMOV_ASSIGN(rows, read_samples_text(from.samples, from.samples_path));
   std::vector<PoseSample> samples;
+  samples.reserve(rows.size());
   for (const SampleRow &row : rows)
     samples.push_back({{row.attitude, {}}, row.weight, 0, 0, row.scale});
   out.modes = track_modes_around(std::move(samples), rate_sd, frame.is_absolute, frame.bands.size(),
