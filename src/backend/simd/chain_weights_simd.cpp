@@ -4,10 +4,7 @@
 #define HWY_TARGET_INCLUDE "backend/simd/chain_weights_simd.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target comes first: it includes this file once for each instruction set.
-#include "backend/simd/lanes.inl.h"
-
-#include "backend/chain_data.h"
-#include "kernel/chain_end.inl.h"
+#include "backend/simd/chain_axes.inl.h"
 
 #include "kernel/begin.h"
 
@@ -38,16 +35,12 @@ struct ChainWeights {
   const backend::ChainSurface *p, *q; ///< of all bands
   std::size_t bands;
   bool is_without_lobes;
-  Triple<Lanes> sun, observer;
+  Axes sun, observer;
 
   struct End {
-    Triple<Lanes> normal, along;
+    Axes normal, along;
     HWY_INLINE End(const backend::ChainEnds &of, std::size_t s)
-        : normal(axes(of.normal, s)), along(axes(of.along, s)) {}
-    static HWY_INLINE Triple<Lanes> axes(const float (&v)[3][backend::lanes], std::size_t s) {
-      const FloatTag d;
-      return {hn::Load(d, v[0] + s), hn::Load(d, v[1] + s), hn::Load(d, v[2] + s)};
-    }
+        : normal(load_axes(of.normal, s)), along(load_axes(of.along, s)) {}
   };
   /// Seen at one end and lit at the other, summed over the bands.
   HWY_INLINE Lanes one_way(const backend::ChainSurface *seen, const End &at_seen,
@@ -87,9 +80,6 @@ struct ChainWeights {
 void weigh_chains_here(const backend::ChainData &data, const backend::ChainRun &run,
                        std::size_t begin, std::size_t blocks, const backend::ChainPose &pose,
                        float *out) {
-  const auto everywhere = [](const float *v) HWY_ATTR {
-    return Triple<Lanes>{Lanes(v[0]), Lanes(v[1]), Lanes(v[2])};
-  };
   const ChainWeights weights{&data.surfaces[run.kind_p * data.bands],
                              &data.surfaces[run.kind_q * data.bands],
                              data.bands,

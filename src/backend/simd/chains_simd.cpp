@@ -4,22 +4,11 @@
 #define HWY_TARGET_INCLUDE "backend/simd/chains_simd.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target comes first: it includes this file once for each instruction set.
-#include "backend/simd/lanes.inl.h"
-
-#include "backend/chain_data.h"
-#include "kernel/chain_end.inl.h"
+#include "backend/simd/chain_axes.inl.h"
 
 #include <cstring>
 
 #include "kernel/begin.h"
-
-using Axes = Triple<Lanes>;
-
-HWY_INLINE Axes everywhere(const float *v) { return {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; }
-HWY_INLINE Axes load_axes(const float (*v)[backend::lanes], std::size_t s) {
-  const FloatTag d;
-  return {hn::Load(d, v[0] + s), hn::Load(d, v[1] + s), hn::Load(d, v[2] + s)};
-}
 
 /// 16 bits of each of the three directions around one.
 struct ThreeWords {

@@ -10,7 +10,6 @@ namespace umov {
 namespace {
 
 constexpr std::uint32_t pick_stream = 0xC4D0;
-constexpr std::size_t blocks_of_piece = 64;
 /// How many chains a pose settles by rays.
 constexpr double least_picks = 512, most_picks = 8192;
 

@@ -27,6 +27,7 @@ public:
                         double accuracy, std::span<backend::ChainSums> sums) const;
 
 private:
+  static constexpr std::size_t blocks_of_piece = 64;
   /// Neighbouring blocks of one run.
   struct Piece {
     std::uint32_t run = 0, first = 0, count = 0; ///< first: counted in the run
@@ -35,7 +36,7 @@ private:
   struct Way {
     std::array<double, replicates> passed{}, next{}, step{};
   };
-  using Weights = std::array<float, 64 * replicates>;
+  using Weights = std::array<float, blocks_of_piece * replicates>;
   void weigh(const Piece &piece, const backend::ChainPose &pose, Weights &out) const;
   void pick(const Piece &piece, const Weights &weights, const backend::ChainPose &pose, Way &way,
             backend::ChainSums &sums) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <umov/core/parallel.h>
 
 namespace umov {
@@ -29,7 +30,7 @@ constexpr double least_of_reserve = 24;
 constexpr double mended_to = 0.5;
 
 constexpr double weight_of(std::size_t level) { return static_cast<double>(chains_of[level]); }
-constexpr double all_weights = weight_of(0) + weight_of(1) + weight_of(2);
+constexpr double all_weights = std::accumulate(chains_of.begin(), chains_of.end(), 0.0);
 
 /// Of a level, or, after the last of them, of the reserve.
 ChainCount count_of(std::size_t level) {
