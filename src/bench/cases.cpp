@@ -164,6 +164,8 @@ std::vector<BenchCase> standard_cases() {
     c.has_errors = false;
   });
   add("hst, fast masks and rays", [](BenchCase &c) { c.mesh = "hst"; });
+  add("hst, default of signature",
+      [](BenchCase &c) { c.mesh = "hst", c.is_default_path = c.is_for_many = true; });
   const auto add_telescope = [&](const char *name, bool is_default, bool is_for_many) {
     add(name, [&](BenchCase &c) {
       c.mesh = "hst";
@@ -210,6 +212,14 @@ std::vector<BenchCase> cases_for_mesh(const std::string &file) {
     one.name = name;
     one.mesh = file;
     one.masks = quality;
+    out.push_back(one);
+  }
+  for (const bool is_for_many : {true, false}) { // what verbs take that are told nothing
+    BenchCase one;
+    one.name = is_for_many ? "default of signature" : "default of run";
+    one.mesh = file;
+    one.is_default_path = true;
+    one.is_for_many = is_for_many;
     out.push_back(one);
   }
   return out;
