@@ -222,6 +222,7 @@ struct BenchTable {
     numbers["poses_per_s"].push_back(one.is_single_pose ? nan : r.rate);
     numbers["latency_us"].push_back(r.latency_us);
     numbers["i_err_median"].push_back(or_nan(r.errors.i_median));
+    numbers["i_err_p90"].push_back(or_nan(r.errors.i_p90));
     numbers["i_err_p95"].push_back(or_nan(r.errors.i_p95));
     numbers["i_err_max"].push_back(or_nan(r.errors.i_max));
     numbers["q_err_p95"].push_back(or_nan(r.errors.q_p95));
@@ -247,6 +248,7 @@ struct BenchTable {
     move("poses_per_s", "1 / s", "best of five");
     move("latency_us", "us", "median of one pose alone");
     move("i_err_median", "", "|I/I_ref - 1|, poses above 1 % of the median light");
+    move("i_err_p90", "", "the same, 90th percentile");
     move("i_err_p95", "", "the same, 95th percentile");
     move("i_err_max", "", "the same, worst");
     move("q_err_p95", "", "|Q/I - (Q/I)_ref|, 95th percentile");

@@ -52,6 +52,7 @@ EngineErrors compare_with_reference(const StokesTable &fast,
   out.outliers.resize(std::min<std::size_t>(out.outliers.size(), 5));
   out.poses = i.size();
   out.i_median = quantile(i, 0.5);
+  out.i_p90 = quantile(i, 0.90);
   out.i_p95 = quantile(i, 0.95);
   out.i_max = quantile(i, 1);
   out.q_median = quantile(q, 0.5);
