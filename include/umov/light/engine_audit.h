@@ -18,9 +18,9 @@ struct EngineOutlier {
 /// relative error says little where only a sliver is seen; `covered` and `outliers` take all.
 struct EngineErrors {
   static constexpr double dim = 0.01;
-  std::size_t poses = 0;                     ///< of the quantiles
+  std::size_t poses = 0;                                ///< of the quantiles
   double i_median = 0, i_p90 = 0, i_p95 = 0, i_max = 0; ///< |I / I_ref - 1|
-  double q_median = 0, q_p95 = 0, q_max = 0; ///< |Q/I - (Q/I)_ref|
+  double q_median = 0, q_p95 = 0, q_max = 0;            ///< |Q/I - (Q/I)_ref|
   double covered = 0;         ///< share of poses whose half-widths, added, cover the difference
   double estimate_median = 0; ///< half-width of I over I
   std::vector<EngineOutlier> outliers; ///< the five worst, the worst first
