@@ -158,6 +158,11 @@ std::vector<BenchCase> standard_cases() {
   add("default of signature", [](BenchCase &c) { c.is_default_path = c.is_for_many = true; });
   add("default of run", [](BenchCase &c) { c.is_default_path = true; });
   add("fine masks", [](BenchCase &c) { c.masks = without_rays(fine_masks); });
+  add("fast masks, series", [](BenchCase &c) {
+    c.masks = without_rays(fast_masks);
+    c.is_series = true;
+    c.has_errors = false;
+  });
   add("one pose, fast masks", [](BenchCase &c) {
     c.masks = without_rays(fast_masks);
     c.is_single_pose = true;

@@ -23,6 +23,7 @@ struct BenchCase {
   std::string instruction_set = "best";
   bool has_errors = true;         ///< compared with rays
   bool is_single_pose = false;    ///< latency instead of rate
+  bool is_series = false;         ///< poses follow each other, without errors
   bool is_intensity_only = false; ///< what polarization costs
   bool is_default_path = false;   ///< through the light model, as `umov run` asks it by default
   bool is_for_many = false;       ///< as `umov signature` asks it by default

@@ -29,6 +29,23 @@ std::vector<Pose> bench_poses(std::uint64_t seed, std::size_t count) {
   return out;
 }
 
+/// A body that turns by 0.1 deg from pose to pose, the Sun 60 deg off its axis, while the phase
+/// angle goes from 15 to 150 deg.
+std::vector<Pose> bench_series(std::size_t count) {
+  const double height = std::cos(pi / 3), radius = std::sin(pi / 3);
+  std::vector<Pose> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double turn = static_cast<double>(i) * pi / 1800;
+    const double phase =
+        pi / 180 * (15 + 135 * static_cast<double>(i) / static_cast<double>(count));
+    const Vec3<Body> sun{radius * std::cos(turn), radius * std::sin(turn), height};
+    const Vec3<Body> aside{-std::sin(turn), std::cos(turn), 0};
+    out.push_back({sun, normalized(std::cos(phase) * sun + std::sin(phase) * aside)});
+    out.back().sun_radius_rad = sun_radius_at_1au_rad;
+  }
+  return out;
+}
+
 /// What one case measured.
 struct BenchResult {
   EngineFacts facts;
@@ -104,7 +121,7 @@ public:
         one.batch > 0 ? std::min(one.batch, static_cast<std::size_t>(64 + longest_s / guess))
                       : static_cast<std::size_t>(std::clamp(request_.seconds / repetitions / guess,
                                                             is_slow ? 8.0 : 256.0, 300'000.0));
-    const auto poses = bench_poses(2, count);
+    const auto poses = one.is_series ? bench_series(count) : bench_poses(2, count);
     out.batch = count;
     if (one.is_single_pose)
       out.latency_us = 1e6 * latency(*engine_, poses);
