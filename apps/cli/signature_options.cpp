@@ -54,7 +54,7 @@ void add_signature_options(CLI::App &verb, SignatureOptions &o, Common &common) 
   verb.add_option(
           "--accuracy", o.accuracy,
           "Relative 95 % half-width asked of I. Default: the scenario's render.accuracy; "
-          "where it has none, 0.04 of I, or of 0.02 of the typical light where that is more "
+          "where it has none, 0.05 of I, or of 0.02 of the typical light where that is more "
           "(most rows are known ten times better), and 0.005 with rays, or with "
           "light between surfaces")
       ->check(CLI::Range(1e-6, 1.0));

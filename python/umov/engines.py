@@ -55,7 +55,7 @@ class Engine(Made):
         How hiding is found: "masks" (looked up), "rays" (traced), "auto" (masks, mended by rays); None: the
         scenario's.
     accuracy
-        Relative 95 % half-width that is asked of I, 1e-6 to 1; None: the scenario's, and where it has none, 0.04 with
+        Relative 95 % half-width that is asked of I, 1e-6 to 1; None: the scenario's, and where it has none, 0.05 with
         "auto", down to 0.02 of the object's typical light.
     laser
         Stokes vector (4) of an active source in the Sun's place; None: sunlight.

@@ -137,7 +137,7 @@ private:
   std::vector<std::string> materials_;
 };
 
-/// What tables of many poses are asked for where nobody says how well: Auto to 0.04 of I, down to
+/// What tables of many poses are asked for where nobody says how well: Auto to 0.05 of I, down to
 /// 0.02 of the typical light, at about half the rate of masks alone. Other methods, and light
 /// of several surfaces, stay as they are.
 LightOptions for_many_poses(LightOptions options);

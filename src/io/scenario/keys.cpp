@@ -170,7 +170,7 @@ const std::vector<Key> &keys() {
        "how hiding is decided: rays, masks, or auto: masks mended by rays to the accuracy asked"},
       {"render", "accuracy", Number, shortest(light.accuracy),
        "relative 95 % half-width asked of I; where it does not stand, signature asks with auto for "
-       "0.04, at a floor of 0.02"},
+       "0.05, at a floor of 0.02"},
       {"render", "accuracy_floor", Number, shortest(default_accuracy_floor(light.method)),
        "in parts of the object's typical light: below it I need not be known any better than at "
        "it; 0 with rays and masks"},

@@ -92,7 +92,7 @@ TEST_F(SignatureJob, ManyPosesAreAskedForLessUnlessSomebodySaysHowWell) {
   SignatureRequest asked, rays;
   asked.accuracy = 0.002;
   rays.method = LightMethod::Rays;
-  EXPECT_EQ(accuracy({}, {}), 0.04);
+  EXPECT_EQ(accuracy({}, {}), 0.05);
   EXPECT_EQ(accuracy({"render.accuracy=0.005"}, {}), 0.005);
   EXPECT_EQ(accuracy({}, asked), 0.002);
   EXPECT_EQ(accuracy({}, rays), 0.005);

@@ -164,7 +164,7 @@ const char *name_of(BetweenMethod method) {
 LightOptions for_many_poses(LightOptions options) {
   if (options.method != LightMethod::Auto || options.bounces > 1)
     return options;
-  options.accuracy = 0.04;
+  options.accuracy = 0.05;
   options.accuracy_floor = options.accuracy_floor.value_or(0.02);
   options.is_for_many_poses = true;
   return options;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <umov/core/files.h>
+#include <umov/light/engine.h>
 #include <umov/light/light_model.h>
 #include <umov/light/poses.h>
 
@@ -65,7 +66,7 @@ TEST(LightModel, AutoMeetsTheAccuracyAndItsHalfWidthsCoverRays) {
   EXPECT_GE(accurate, 118U);
 }
 
-// As above: 105 of 120 rows. What masks of 64 cells tell to 4 % needs no rays in nine of ten poses.
+// As above: 105 of 120 rows. What masks of 70 cells tell to 5 % needs no rays in nine of ten poses.
 TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
   const auto poses = poses_of(120);
   const auto many = model(for_many_poses({}));
@@ -78,7 +79,7 @@ TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const std::size_t at = k * 3 + 1;
     covered += std::abs(fast.i[at] - dense.i[at]) <= fast.i_err[at] + dense.i_err[at] ? 1u : 0u;
-    accurate += fast.i_err[at] <= 0.04 * 1.002 * std::max(fast.i[at], floor[1]) ? 1u : 0u;
+    accurate += fast.i_err[at] <= 0.05 * 1.002 * std::max(fast.i[at], floor[1]) ? 1u : 0u;
     looked_up += fast.method[k] == PoseMethod::Masks ? 1u : 0u;
   }
   EXPECT_GE(covered, 105U);
@@ -86,7 +87,7 @@ TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
   EXPECT_GE(looked_up, 100U);
 }
 
-// Pose 10,806 of a sweep over all phases: the masks see a little of Agena of which rays find
+// Pose 10,806 of a sweep over all phases: these masks see a little of Agena of which rays find
 // nothing.
 TEST(LightModel, LightThatRaysTakeAwayLeavesNoLessThanNone) {
   std::vector<Material> materials;
@@ -97,14 +98,19 @@ TEST(LightModel, LightThatRaysTakeAwayLeavesNoLessThanNone) {
     materials.push_back(builtin_material(name).value());
     materials.back().distribution = blinn_phong(exponent);
   }
-  const auto made =
-      make_light(scene_of(make_agena(), NormalMode::Flat, materials), {}, for_many_poses({}));
-  ASSERT_TRUE(made) << made.error().text();
+  const Scene scene = scene_of(make_agena(), NormalMode::Flat, materials);
+  EngineOptions options; // as tables of many poses have it, with the masks in which this was seen
+  options.masks = {60'000, 64, 64, 0.038};
+  options.is_for_many_poses = options.is_lazy = true;
+  options.q_part = 1;
+  for (const double light : typical_light(scene))
+    options.floor_i.push_back(0.02 * light);
   const std::size_t number = 10'806;
   const double share = std::fmod(0.5 + 0.6180339887498949 * static_cast<double>(number), 1.0);
   Pose pose = random_pose(11, number, Angle::degrees(180 * share));
   pose.sun_radius_rad = sun_radius_at_1au_rad;
-  const auto table = lit(**made, {pose});
+  StokesTable table;
+  Engine(scene, options).evaluate({&pose, 1}, table);
   EXPECT_EQ(table.method[0], PoseMethod::Mended);
   for (std::size_t b = 0; b < 3; ++b) {
     EXPECT_GE(table.i[b], 0);
