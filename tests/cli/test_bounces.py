@@ -1,9 +1,14 @@
 """Light between the parts of an object."""
 import csv
 import math
+import os
+import pathlib
+import signal
+import subprocess
+import time
 
 import pytest
-from conftest import ROOT, read_csv
+from conftest import ROOT, UMOV, read_csv
 
 
 def test_a_convex_mesh_is_the_same_and_a_box_wing_brighter(umov, scenario, tmp_path):
@@ -163,3 +168,34 @@ def test_stokes_agree_with_mitsubas_path_tracer(umov, tmp_path, which):
             if bounces > 1:  # nor are the errors so large that anything would do
                 assert square > 8, (bounces, name, square)
     assert sum(abs(float(row["v"])) > 1e-4 * float(row["i"]) for row in reference if row["bounces"] == "5") > 10
+
+
+def processor_s(process):
+    """Seconds of the processor that a process has had."""
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def test_a_stop_is_heard_while_the_reserve_of_chains_is_drawn(tmp_path):
+    """Plates of narrow lobes alone: a million chains, some 4 s of a core, before the first row."""
+    (tmp_path / "plates.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\ng floor\nf 1 2 3\nf 1 3 4\ng wall\nf 1 4 6\nf 1 6 5\n")
+    (tmp_path / "s.toml").write_text(
+        'umov = 1\n[[object]]\nname = "plates"\nmesh = { file = "plates.obj", unit = "m", up = "+Z" }\n'
+        '[object.materials]\ndefault = "m"\n[material.m]\nindex = { n = 0.4, k = 2.4 }\nshadowing = "separable"\n'
+        'distribution = { model = "ggx", alpha = 0.12 }\n[bands]\nset = ["nm:550"]\n'
+        '[render]\nbounces = 3\nbetween = "chains"\n')
+    process = subprocess.Popen([UMOV, "signature", "s.toml", "--poses", "2", "--phase", "60", "--threads", "1", "-o", "x.csv"],
+                               cwd=tmp_path, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    while processor_s(process) < 1.5:
+        time.sleep(0.01)
+    had = processor_s(process)
+    process.send_signal(signal.SIGINT)
+    took = had
+    while process.poll() is None:
+        took = processor_s(process)
+        time.sleep(0.002)
+    told = process.stderr.read()
+    assert process.returncode == 130, told
+    assert "stopped by the user" in told and took - had < 0.5
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["plates.obj", "s.toml"]  # nothing half done is kept

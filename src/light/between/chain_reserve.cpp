@@ -51,6 +51,7 @@ std::vector<ChainReserve::Told> ChainReserve::add(std::span<const backend::Chain
   std::vector<Lanes> sum(pieces_.size() * poses.size());
   std::vector<Way> ways(poses.size());
   std::vector<Told> out(poses.size());
+  std::vector<std::vector<Pick>> stopped(poses.size());
   Weights weights;
   // Piece by piece for all poses, while the cache has it.
   for (std::size_t p = 0; p < pieces_.size(); ++p)
@@ -66,7 +67,7 @@ std::vector<ChainReserve::Told> ChainReserve::add(std::span<const backend::Chain
     Way &way = ways[k];
     const double all = std::accumulate(way.step.begin(), way.step.end(), 0.0) / replicates,
                  picks = picks_for(direct_i[k], all, accuracy);
-    out[k] = {all, static_cast<std::size_t>(picks)};
+    out[k] = {all, static_cast<std::size_t>(picks), {}};
     for (std::size_t r = 0; r < replicates; ++r) {
       way.step[r] *= replicates / picks;
       way.next[r] = shift_[r] * way.step[r];
@@ -84,35 +85,70 @@ std::vector<ChainReserve::Told> ChainReserve::add(std::span<const backend::Chain
       }
       if (is_any) {
         weigh(pieces_[p], poses[k], weights);
-        pick(pieces_[p], weights, poses[k], way, sums[k]);
+        pick(pieces_[p], weights, poses[k], way, sums[k], stopped[k]);
       }
       way.passed = end;
     }
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    out[k].hidden = hidden(stopped[k], poses[k]);
   return out;
 }
 
 void ChainReserve::pick(const Piece &piece, const Weights &weights, const backend::ChainPose &pose,
-                        Way &way, backend::ChainSums &sums) const {
+                        Way &way, backend::ChainSums &sums, std::vector<Pick> &stopped) const {
   for (std::size_t k = 0; k < piece.count; ++k)
     for (std::size_t r = 0; r < replicates; ++r) {
       const auto weight = static_cast<double>(weights[k * replicates + r]);
       way.passed[r] += weight;
-      std::size_t times = 0;
+      double steps = 0;
       for (; weight > 0 && way.next[r] < way.passed[r]; way.next[r] += way.step[r])
-        ++times;
-      if (times > 0)
-        settle(runs_[piece.run].first + piece.first + k, r,
-               static_cast<double>(times) * way.step[r] / weight, pose, sums);
+        ++steps;
+      if (steps == 0)
+        continue;
+      const Pick pick{runs_[piece.run].first + piece.first + k, r, steps,
+                      steps * way.step[r] / weight};
+      if (settle(pick, pose, sums))
+        stopped.clear();
+      else if (!(sums.squares > 0))
+        stopped.push_back(pick);
     }
 }
 
-void ChainReserve::settle(std::size_t block, std::size_t lane, double times,
-                          const backend::ChainPose &pose, backend::ChainSums &sums) const {
+bool ChainReserve::settle(const Pick &pick, const backend::ChainPose &pose,
+                          backend::ChainSums &sums) const {
+  bool is_any = false;
   for (const bool is_reversed : {false, true}) {
-    const OneChain one{run_at(block), block, lane, is_reversed};
-    if (faces(one, pose) && is_free(one, pose))
-      add_one(one, times, pose, sums);
+    const OneChain one{run_at(pick.block), pick.block, pick.lane, is_reversed};
+    if (!faces(one, pose) || !is_free(one, pose))
+      continue;
+    add_one(one, pick.times, pose, sums);
+    is_any = true;
   }
+  return is_any;
+}
+
+/// Of n picks that none passed at most 3/n of all pass (95 %). What these carry for their weight in
+/// a band is taken as where most of that band's light is: of one whose light few of them have, more
+/// than in the mean.
+std::vector<double> ChainReserve::hidden(const std::vector<Pick> &stopped,
+                                         const backend::ChainPose &pose) const {
+  std::vector<double> light(bands_), square(bands_), out(bands_);
+  for (const Pick &pick : stopped) {
+    std::vector<backend::ChainLight> one(bands_);
+    backend::ChainSums sums;
+    sums.bands = one;
+    for (const bool is_reversed : {false, true})
+      add_one({run_at(pick.block), pick.block, pick.lane, is_reversed}, pick.times, pose, sums);
+    for (std::size_t b = 0; b < bands_; ++b) {
+      const double i = one[b].i[pick.lane] / replicates;
+      light[b] += i;
+      square[b] += i * i / pick.steps;
+    }
+  }
+  for (std::size_t b = 0; b < bands_; ++b)
+    if (light[b] > 0)
+      out[b] = 3 * square[b] / light[b];
+  return out;
 }
 
 } // namespace umov

@@ -18,8 +18,9 @@ public:
 
   /// What a pose was told from.
   struct Told {
-    double all = 0;        ///< I of all chains in the mean of the bands, if nothing hid an end
-    std::size_t picks = 0; ///< how many were settled
+    double all = 0;             ///< what all chains weigh for it
+    std::size_t picks = 0;      ///< how many were settled
+    std::vector<double> hidden; ///< where none of them passed: I per band that may do (95 %)
   };
   /// Adds what all of them carry in all bands, told from as many of them as tell the whole light,
   /// with direct_i of each pose in the first band, to about `accuracy`, within limits.
@@ -37,11 +38,18 @@ private:
     std::array<double, replicates> passed{}, next{}, step{};
   };
   using Weights = std::array<float, blocks_of_piece * replicates>;
+  struct Pick {
+    std::size_t block, lane;
+    double steps, times; ///< on it, and how often it counts for them
+  };
   void weigh(const Piece &piece, const backend::ChainPose &pose, Weights &out) const;
+  /// Lists the picks too, in `stopped`, as long as none of them has passed.
   void pick(const Piece &piece, const Weights &weights, const backend::ChainPose &pose, Way &way,
-            backend::ChainSums &sums) const;
-  void settle(std::size_t block, std::size_t lane, double times, const backend::ChainPose &pose,
-              backend::ChainSums &sums) const;
+            backend::ChainSums &sums, std::vector<Pick> &stopped) const;
+  /// False if rays stop it both ways.
+  bool settle(const Pick &pick, const backend::ChainPose &pose, backend::ChainSums &sums) const;
+  [[nodiscard]] std::vector<double> hidden(const std::vector<Pick> &stopped,
+                                           const backend::ChainPose &pose) const;
 
   std::vector<Piece> pieces_;
   std::vector<float> transmitted_; ///< of I, [block * 16 + lane]

@@ -84,16 +84,19 @@ double total_of(const backend::ChainLight &sum) {
 bool put_reserve(const backend::ChainSums &sums, const ChainReserve::Told &told,
                  IndirectLight &out) {
   const double total = total_of(sums.bands[0]);
-  if (!std::isfinite(told.all) || !std::isfinite(total))
+  double all = 0;
+  for (const backend::ChainLight &band : sums.bands)
+    all += total_of(band);
+  if (!std::isfinite(told.all) || !std::isfinite(all))
     return false;
   out.bands.assign(sums.bands.size(), {});
-  if (!(total > 0)) {
-    // None of n passed: as much as 3/n may (95 %).
-    const double hidden = 3 * told.all / static_cast<double>(told.picks);
-    for (BandResult &band : out.bands)
-      band.half_width = {hidden, hidden, hidden, hidden};
+  if (!(all > 0)) {
+    for (std::size_t b = 0; b < out.bands.size(); ++b)
+      out.bands[b].half_width = {told.hidden[b], told.hidden[b], told.hidden[b], told.hidden[b]};
     return true;
   }
+  if (!(sums.squares > 0))
+    return false; // light that the first band, which tells how many carry it, has none of
   const double met = total * total / sums.squares,
                wider = std::sqrt(std::max(1.0, least_chains / met));
   for (std::size_t b = 0; b < out.bands.size(); ++b)

@@ -222,6 +222,61 @@ TEST(Chains, AReserveServesNarrowLobes) {
   }
 }
 
+/// A dielectric at 425 nm that grows metallic: light of two surfaces 20 times as bright at 650 nm.
+Material reddening(double alpha) {
+  Material out = rough("paper_au", alpha);
+  out.index = tabulated_index("reddening", {425, 550, 650}, {{1.5, 0}, {1.5, 0.6}, {1.5, 1.2}});
+  return out;
+}
+
+// Through a small hole of a sphere few chains are both lit and seen, and for many poses none of
+// those that were settled: what they may have missed is said of each band as that band is bright
+// (it was one number for all). Paths know what there was.
+TEST(Chains, WhatMayBeHiddenIsSaidOfEachBand) {
+  const Mesh mesh = cavity(2'000, 15).mesh;
+  IntegrationOptions chains = by_chains(2), paths = by_chains(2, 0.05);
+  chains.max_points = 1u << 18;
+  paths.max_points = 1u << 14;
+  paths.between = BetweenMethod::Paths;
+  for (const auto &[material, least_ratio] :
+       {std::pair{reddening(0.12), 12.0}, std::pair{rough("paper_au", 0.12), 4.0}}) {
+    const Integrator integrator(scene_of(mesh, NormalMode::Flat, {material}));
+    std::vector<Pose> poses, dark;
+    for (std::uint64_t i = 0; i < 32; ++i) {
+      const auto u = uniform4(12, 3, i);
+      poses.push_back({normalized(Vec3<Body>{u[0] - 0.5, u[1] - 0.5, 0.7}),
+                       normalized(Vec3<Body>{u[2] - 0.5, u[3] - 0.5, 0.7})});
+    }
+    // Beside so much direct light few chains are settled.
+    const std::vector<double> much(3 * poses.size(), 1e6);
+    std::vector<IndirectLight> told;
+    const auto all = integrator.indirect(poses, much, chains, 2);
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      if (all[k].bands[2].stokes.i == 0 && all[k].bands[2].half_width.i > 0) {
+        dark.push_back(poses[k]);
+        told.push_back(all[k]);
+      }
+    ASSERT_GE(dark.size(), 8u);
+    const std::vector<double> none(3 * dark.size());
+    const auto drawn = integrator.indirect(dark, none, paths, 2);
+    std::array<std::size_t, 3> covered{};
+    std::array<double, 3> width{};
+    for (std::size_t k = 0; k < dark.size(); ++k) {
+      const auto &bands = told[k].bands;
+      for (std::size_t b = 0; b < 3; ++b) {
+        width[b] += bands[b].half_width.i;
+        covered[b] +=
+            drawn[k].bands[b].stokes.i <= bands[b].half_width.i + drawn[k].bands[b].half_width.i
+                ? 1
+                : 0;
+      }
+    }
+    EXPECT_GT(width[2], least_ratio * width[0]); // some of it at grazing incidence, white
+    for (std::size_t b = 0; b < 3; ++b)          // of 95 % as many may lack by chance, or fewer
+      EXPECT_GE(covered[b] + 2 + dark.size() / 20, dark.size()) << b;
+  }
+}
+
 // Slats of .04 m that stand .12 m apart, .1 m above the floor, are finer than the ends' grids of
 // directions: interpolation alone is off by more than the replicates' spread.
 TEST(Chains, HalfWidthsHoldBehindNarrowSlats) {
@@ -308,6 +363,41 @@ TEST(Chains, AStopWhileChainsAreDrawnIsHeardAndLeavesNothing) {
   const auto whole = fresh.indirect(poses, direct, by_chains(4), 1);
   EXPECT_LT(heard, (Clock::now() - again) / 2);
   const auto after = stopped.indirect(poses, direct, by_chains(4), 1);
+  ASSERT_EQ(after.size(), 1u);
+  EXPECT_EQ(after[0].bands[1].stokes.i, whole[0].bands[1].stokes.i);
+  EXPECT_EQ(after[0].bands[1].half_width.u, whole[0].bands[1].half_width.u);
+}
+
+// The reserve is a million chains, drawn in seconds: heard within them, whenever it comes.
+TEST(Chains, AStopWhileTheReserveIsDrawnIsHeardAndLeavesNothing) {
+  const Scene scene =
+      scene_of(three_plates(), NormalMode::Flat, {rough("paper_au", 0.12), rough("paper_al", 0.1)});
+  const std::vector<Pose> poses{into_corner(1)};
+  const std::vector<double> direct(3);
+  IntegrationOptions options = by_chains(3);
+  options.max_points = 1u << 18;
+  const Integrator stopped(scene), fresh(scene);
+  using Clock = std::chrono::steady_clock;
+  const auto again = Clock::now();
+  const auto whole = fresh.indirect(poses, direct, options, 1);
+  const auto took = Clock::now() - again;
+  for (const int part : {1, 5, 9}) { // of ten: rays, thinning, blocks
+    std::atomic<bool> cancel{false};
+    Clock::time_point asked;
+    std::thread user([&] {
+      std::this_thread::sleep_for(took * part / 10);
+      asked = Clock::now();
+      cancel = true;
+    });
+    const auto nothing = stopped.indirect(poses, direct, options, 1, &cancel);
+    const auto ended = Clock::now();
+    user.join();
+    if (ended < asked)
+      continue; // faster than the first time
+    EXPECT_TRUE(nothing.empty()) << part;
+    EXPECT_LT(ended - asked, took / 4) << part;
+  }
+  const auto after = stopped.indirect(poses, direct, options, 1);
   ASSERT_EQ(after.size(), 1u);
   EXPECT_EQ(after[0].bands[1].stokes.i, whole[0].bands[1].stokes.i);
   EXPECT_EQ(after[0].bands[1].half_width.u, whole[0].bands[1].half_width.u);
