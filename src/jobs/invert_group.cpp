@@ -8,8 +8,11 @@
 
 namespace umov::jobs {
 
-Result<Scenario> GroupLight::with(const std::string &group, const std::string &material) const {
+Result<Scenario> GroupLight::with(const GroupMaterial &part) const {
+  const std::string &material = part.material;
   Scenario out = scenario_;
+  if (part.group.empty())
+    return out;
   if (!out.own_materials.contains(material)) {
     std::vector<std::string> known = material_library();
     for (const auto &own : out.own_materials)
@@ -22,21 +25,45 @@ Result<Scenario> GroupLight::with(const std::string &group, const std::string &m
                                    : "; umov material list tells which there are"));
     }
   }
-  out.objects.front().materials[group] = {material, material};
+  out.objects.front().materials[part.group] = {material, material};
   return out;
 }
 
-Result<EndMember> GroupLight::of(const std::string &group, const std::string &material,
-                                 const Monitor &monitor, Vec3<Body> turn) {
-  Scenario scenario = scenario_;
-  if (!group.empty()) {
-    UMOV_ASSIGN(changed, with(group, material));
-    scenario = std::move(changed);
+bool GroupLight::has_chains() const {
+  return scenario_.light.bounces > 1 && scenario_.light.between == BetweenMethod::Chains;
+}
+
+/// The first draws chains for all, and the others take them.
+Result<ChainFamily> GroupLight::family(const GroupMaterial &part, const Monitor &monitor) const {
+  ChainFamily out;
+  out.elder = first_.model;
+  if (!has_chains() || out.elder)
+    return out;
+  for (const GroupMaterial &other : all_) {
+    if (other == part)
+      continue;
+    UMOV_ASSIGN(scenario, with(other));
+    Diagnostics known; // those of the same files, told before
+    UMOV_ASSIGN(object, load_object(scenario, 0,
+                                    {.allow_old_elements = true, .cancel = monitor.cancel}, known));
+    out.also.push_back(std::move(object.scene));
   }
-  UMOV_ASSIGN(out,
-              known_light(scenario, {observed_.geometry, observed_.column, request_.method, turn},
-                          options_, monitor, used_));
-  out.name = material;
+  return out;
+}
+
+Result<EndMember> GroupLight::of(const GroupMaterial &part, const Monitor &monitor,
+                                 Vec3<Body> turn) {
+  UMOV_ASSIGN(scenario, with(part));
+  KnownLightRequest asked{observed_.geometry, observed_.column, request_.method, turn};
+  UMOV_ASSIGN(chains, family(part, monitor));
+  asked.chains = std::move(chains);
+  const bool is_first = has_chains() && (!first_.model || first_.part == part);
+  if (is_first)
+    asked.model = &first_.model;
+  UMOV_ASSIGN(out, known_light(scenario, asked, options_, monitor, used_));
+  if (is_first)
+    first_.part = part;
+  out.name = part.material;
   return out;
 }
 

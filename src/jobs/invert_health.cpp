@@ -39,6 +39,7 @@ struct DriftedLight {
   ObservedLightCurve observed;
   EndMember before;
   std::vector<LightChange> changes, unknowns;
+  GroupLight::Kept kept; ///< for the same object at other times
   [[nodiscard]] Health check(const ObservedCurve &curve, const CurveErrors &errors) const {
     return check_health(curve, errors, before, changes, unknowns);
   }
@@ -47,27 +48,33 @@ struct DriftedLight {
 Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &request,
                               const HealthOptions &asked, const std::vector<Drift> &drifts,
                               const JobOptions &options, const Monitor &monitor,
-                              Diagnostics &diagnostics, ManifestInput::Light &used) {
+                              Diagnostics &diagnostics, ManifestInput::Light &used,
+                              const GroupLight::Kept &earlier = {}) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
                                        options.threads, inputs, diagnostics));
   UMOV_ASSIGN(own, observed_light_curve(scenario, files, request.allow_old_elements, diagnostics,
                                         true, monitor.cancel));
-  DriftedLight out{std::move(own), {}, {}, {}};
+  DriftedLight out{std::move(own), {}, {}, {}, {}};
   ObservedLightCurve &observed = out.observed;
   observed.inputs.insert(observed.inputs.end(), inputs.begin(), inputs.end());
   if (std::ranges::none_of(observed.curve.samples, [](const ObservedSample &s) { return s.i > 0; }))
     return fail(ErrorCode::BadInput,
                 "no row has light above 0: changes show in I, and in q and u in parts of it",
                 {request.observations.front()});
-  GroupLight light(scenario, request, observed, options);
+  const GroupMaterial as_it_is;
+  std::vector<GroupMaterial> all{as_it_is};
+  for (const Drift &drift : drifts)
+    all.push_back({drift.group, drift.material});
+  GroupLight light(scenario, request, observed, options, all);
+  light.take(earlier);
   const std::size_t steps = drifts.size() + 4;
   monitor.advance("light of the object", 0, steps);
-  UMOV_ASSIGN(before, light.of("", "", monitor));
+  UMOV_ASSIGN(before, light.of(as_it_is, monitor));
   out.before = std::move(before);
   for (const Drift &drift : drifts) {
     monitor.advance("light of the object", 1 + out.changes.size(), steps);
-    UMOV_ASSIGN(after, light.of(drift.group, drift.material, monitor));
+    UMOV_ASSIGN(after, light.of({drift.group, drift.material}, monitor));
     out.changes.push_back({drift.name, std::move(after), 1, 0});
   }
   const double sd = asked.attitude_sd_deg * pi / 180;
@@ -75,10 +82,11 @@ Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &req
   const Vec3<Body> axes[] = {{difference, 0, 0}, {0, difference, 0}, {0, 0, difference}};
   for (const Vec3<Body> &turn : axes)
     if (sd > 0) {
-      UMOV_ASSIGN(aside, light.of("", "", monitor, turn));
+      UMOV_ASSIGN(aside, light.of(as_it_is, monitor, turn));
       out.unknowns.push_back({"attitude", std::move(aside), difference, sd});
     }
   used = light.used();
+  out.kept = light.kept();
   return out;
 }
 
@@ -139,7 +147,7 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
     earlier.observations = asked.baseline;
     ManifestInput::Light as_before;
     UMOV_ASSIGN(baseline, light_of(scenario, earlier, asked, drifts, options, monitor, diagnostics,
-                                   as_before));
+                                   as_before, light.kept));
     old = std::move(baseline);
     before = old->check(old->observed.curve, request.errors);
     count_from(*before, health);

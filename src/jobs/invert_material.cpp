@@ -239,11 +239,14 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
                 "no row has light: materials are told apart by I, flux or mag, and by q and u in "
                 "parts of it; add such a column",
                 {request.observations.front()});
-  GroupLight light(scenario, request, observed, options);
+  std::vector<GroupMaterial> all;
+  for (const std::string &name : material.candidates)
+    all.push_back({material.group, name});
+  GroupLight light(scenario, request, observed, options, all);
   std::vector<EndMember> members;
-  for (const std::string &name : material.candidates) {
+  for (const GroupMaterial &candidate : all) {
     monitor.advance("candidates", members.size(), material.candidates.size());
-    UMOV_ASSIGN(member, light.of(material.group, name, monitor));
+    UMOV_ASSIGN(member, light.of(candidate, monitor));
     members.push_back(std::move(member));
   }
   tell_of_device(light.used().device, diagnostics);

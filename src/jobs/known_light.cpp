@@ -17,7 +17,14 @@ Result<EndMember> known_light(const Scenario &scenario, const KnownLightRequest 
                           object.attitude, moving, scenario.has_solar_disk}));
   LightOptions lit = light_options(scenario, options);
   lit.method = request.method.value_or(lit.method);
-  UMOV_ASSIGN(light, make_light(object.scene, joints_of(moving), lit, monitor.cancel));
+  std::shared_ptr<const LightModel> light = request.model != nullptr ? *request.model : nullptr;
+  if (!light) {
+    UMOV_ASSIGN(made,
+                make_light(object.scene, joints_of(moving), lit, monitor.cancel, request.chains));
+    light = std::move(made);
+    if (request.model != nullptr)
+      *request.model = light;
+  }
   const auto turned_back = rotation_from<Body, Body>(turned({}, request.turn)); // of directions
   std::vector<Pose> poses;
   std::vector<double> angles;

@@ -59,13 +59,25 @@ struct SurfacePoint {
 };
 
 class ThermalEmission;
+class Integrator;
+
+/// What chains (BetweenMethod::Chains) have to do with those of other materials on the same mesh.
+struct ChainSharing {
+  /// They are drawn for the light of these scenes, too, so that integrators of them may take them.
+  std::vector<Scene> also = {};
+  /// Whose chains are taken, without any new rays: where it drew them for this scene, or this one's
+  /// surfaces scatter much like those that they were drawn for, as with other n, k or reflectance.
+  /// Else there are own ones. Null: own ones.
+  std::shared_ptr<const Integrator> elder = nullptr;
+};
 
 /// Compiled scene. `evaluate` is pure and thread safe: the same poses give the same bits whatever
 /// the number of threads and whatever was computed before.
 class Integrator {
 public:
   /// Compiles a scene. Throws as Engine.
-  explicit Integrator(const Scene &scene, const std::atomic<bool> *cancel = nullptr);
+  explicit Integrator(const Scene &scene, const std::atomic<bool> *cancel = nullptr,
+                      ChainSharing sharing = {});
   ~Integrator();
   Integrator(Integrator &&) noexcept;
   Integrator &operator=(Integrator &&) noexcept;
@@ -101,6 +113,8 @@ public:
   indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
                     const IntegrationOptions &options, std::size_t paths, std::uint64_t first,
                     const std::atomic<bool> *cancel = nullptr) const;
+  /// Chains of so many bounces and this seed are the elder's (ChainSharing).
+  [[nodiscard]] bool takes_chains(std::size_t bounces, std::uint64_t seed) const;
   /// Nothing of the body can hide anything else of it.
   [[nodiscard]] bool is_convex() const;
 

@@ -60,6 +60,17 @@ struct LightOptions {
   DeviceOptions device = {};
 };
 
+class LightModel;
+
+/// What models of other materials on the same mesh have of the chains of light between surfaces
+/// (BetweenMethod::Chains) that one of them draws.
+struct ChainFamily {
+  /// Scenes for whose light they are drawn, too.
+  std::vector<Scene> also = {};
+  /// Whose chains are taken, without new rays, where they serve (ChainSharing).
+  std::shared_ptr<const LightModel> elder = nullptr;
+};
+
 /// What was made ready.
 struct LightFacts {
   LightMethod method = LightMethod::Rays; ///< Rays where Auto takes nothing else
@@ -118,6 +129,13 @@ public:
   /// Copies from now on what another model has traced of the same masks, in place of tracing it
   /// again; nothing changes where its masks are others, or none. Never both ways, or around.
   virtual void take_masks_of(const LightModel &elder) const { (void)elder; }
+  /// The reference path behind light between surfaces; null where there is none, or parts turn.
+  /// Throws as Engine.
+  [[nodiscard]] virtual std::shared_ptr<const Integrator>
+  chain_drawer(const std::atomic<bool> *cancel) const {
+    (void)cancel;
+    return nullptr;
+  }
   /// Bytes of the masks as they are now: rows are traced when they are first asked for.
   [[nodiscard]] virtual std::size_t mask_bytes() const { return 0; }
 
@@ -155,7 +173,8 @@ double default_accuracy_floor(LightMethod method);
 /// `cancel` became true.
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options,
-                                               const std::atomic<bool> *cancel = nullptr);
+                                               const std::atomic<bool> *cancel = nullptr,
+                                               ChainFamily family = {});
 
 /// The same for hundreds of directions at each epoch, as light of the Earth asks for: direct light
 /// by masks alone.

@@ -84,6 +84,8 @@ Vertex BounceScene::vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> 
   out.triangle = t;
   out.is_front = side > 0;
   const bool is_own_back = side <= 0 && triangle.back == triangle.front;
+  out.slot = is_own_back ? slot_of(triangle.back, true)
+                         : slot_of(side > 0 ? triangle.front : triangle.back, false);
   out.sampler = is_own_back ? &back_sampler_[triangle.back]
                             : &front_sampler_[side > 0 ? triangle.front : triangle.back];
   out.field = direction_field(mesh, *out.surface, t);

@@ -19,7 +19,7 @@ struct Vertex {
   const Surface *surface = nullptr;
   const Sampler *sampler = nullptr;
   bool is_by_mirror = false; ///< the path goes on from here (towards the Sun) as from a mirror
-  std::uint32_t triangle = 0;
+  std::uint32_t triangle = 0, slot = 0; ///< slot: of the surface (surface_of_slot)
   bool is_front = true;
 };
 

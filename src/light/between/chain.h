@@ -1,39 +1,49 @@
 #pragma once
-// Private: what a way between surfaces is, however the body is lit.
+// Private: what a way between surfaces is, however the body is lit and whatever it is made of.
 
-#include "light/between/bounce_scene.h"
-
-#include <umov/optics/stokes.h>
+#include <cstdint>
+#include <umov/core/quantity.h>
+#include <umov/core/vec3.h>
 #include <vector>
 
 namespace umov {
 
 /// One end of a chain: where light comes in from the Sun, or leaves to the observer.
 struct ChainEnd {
-  Vec3<Body> point{}, face{}, normal{}, field{};
-  Vec3<Body> along{}; ///< unit, to the next surface of the chain
-  Vec3<Body> axis{};  ///< of the beam at this end: normal x along
-  const Surface *surface = nullptr;
-  const Sampler *sampler = nullptr;
-  std::uint32_t kind = 0; ///< of surface: into ChainSurfaces
+  Vec3<Body> point{}, face{}, normal{};
+  Vec3<Body> along{};                   ///< unit, to the next surface of the chain
+  Vec3<Body> axis{};                    ///< of the beam at this end: normal x along
+  std::uint32_t triangle = 0, slot = 0; ///< slot: of its surface (surface_of_slot)
+  std::uint32_t kind = 0;               ///< of surface: into ChainCover
+};
+
+/// A surface in between, with the direction in which its chain goes on from there as it was drawn:
+/// what its matrix follows from, of any material.
+struct ChainVertex {
+  float normal[3], to[3];
+  float density; ///< [1/sr]; of a mirror's one direction, its probability
+  std::uint32_t triangle;
+  std::uint32_t slot : 31;
+  std::uint32_t is_by_mirror : 1;
 };
 
 /// What happens to light between its first and its last reflection: a fact of the body alone.
 struct Chain {
   ChainEnd p, q;
   /// Area times solid angle over how likely it was drawn, with the cosines at the chain's side of
-  /// each surface: with the observer at p, and with the observer at q.
+  /// each end: with the observer at p, and with the observer at q.
   double from_p = 0, from_q = 0;
-  bool is_straight = true;  ///< nothing in between
-  std::uint32_t matrix = 0; ///< into ChainList::between, else
-  double transmitted = 1;   ///< of I, over all bands: how much it counts
+  std::uint32_t first = 0, count = 0; ///< of ChainList::between; 0: straight
 };
 
-/// Chains with the Mueller matrices of what lies between their ends, from the axis of q to that of
-/// p: [(matrix * bands + band) * 16 + 4 * row + column].
+/// Chains, with the surfaces between their ends from p on.
 struct ChainList {
   std::vector<Chain> chains;
-  std::vector<float> between;
+  std::vector<ChainVertex> between;
+  /// Of I, in the mean of the bands: [chain * members of the cover + member].
+  std::vector<float> transmitted;
 };
+
+inline Vec3<Body> vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 } // namespace umov

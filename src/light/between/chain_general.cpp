@@ -29,18 +29,19 @@ std::uint32_t any_of(const std::vector<std::uint16_t> &free, const backend::Grid
 } // namespace
 
 double ChainLevel::guessed(const OneChain &one, const backend::ChainPose &pose) const {
-  return share_of(one.is_reversed ? free_q_ : free_p_, pose.at_observer, blocks_, one.block,
-                  one.lane) *
-         share_of(one.is_reversed ? free_p_ : free_q_, pose.at_sun, blocks_, one.block, one.lane);
+  return share_of(one.is_reversed ? drawn_.free_q : drawn_.free_p, pose.at_observer, blocks(),
+                  one.block, one.lane) *
+         share_of(one.is_reversed ? drawn_.free_p : drawn_.free_q, pose.at_sun, blocks(), one.block,
+                  one.lane);
 }
 
 void ChainLevel::add_general(const backend::ChainRun &run, const backend::ChainPose &pose,
                              backend::ChainSums &sums) const {
   for (std::size_t block = run.first; block < run.first + run.count; ++block) {
-    const std::uint32_t open[2] = {any_of(free_p_, pose.at_observer, blocks_, block) &
-                                       any_of(free_q_, pose.at_sun, blocks_, block),
-                                   any_of(free_q_, pose.at_observer, blocks_, block) &
-                                       any_of(free_p_, pose.at_sun, blocks_, block)};
+    const std::uint32_t open[2] = {any_of(drawn_.free_p, pose.at_observer, blocks(), block) &
+                                       any_of(drawn_.free_q, pose.at_sun, blocks(), block),
+                                   any_of(drawn_.free_q, pose.at_observer, blocks(), block) &
+                                       any_of(drawn_.free_p, pose.at_sun, blocks(), block)};
     if ((open[0] | open[1]) == 0)
       continue;
     backend::ChainNote note{static_cast<std::uint32_t>(block), {}, {}, 0, 0};

@@ -1,17 +1,15 @@
 #pragma once
-// Private: a set of chains with the directions in which their ends are free.
+// Private: a level of chains, with the directions in which their ends are free.
 
 #include "light/between/chain_set.h"
 
 namespace umov {
 
-/// Drawn once; asked for sums after that. Thread safe.
+/// Made once; asked for sums after that. Thread safe.
 class ChainLevel : public ChainSet {
 public:
-  /// `grids` for the rays of the ends' visibility. Of no use once `cancel`, which may be null,
-  /// became true.
-  ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces, const Occluder &occluder,
-             const Occluder &grids, std::size_t bands, const ChainCount &count, std::uint64_t seed,
+  /// `level`: which of the drawing. Of no use once `cancel`, which may be null, became true.
+  ChainLevel(const ChainDrawn &drawn, const ChainMaterials &materials, std::size_t level,
              unsigned threads, const std::atomic<bool> *cancel);
 
   /// Adds what the chains carry, in all bands.
@@ -26,8 +24,6 @@ public:
                                 const backend::ChainSums &sums) const;
 
 private:
-  void trace(const std::vector<Placed> &placed, const Occluder &grids, unsigned threads,
-             const std::atomic<bool> *cancel);
   void add_run(std::size_t number, std::span<const backend::ChainPose> poses,
                std::span<backend::ChainSums> sums) const;
   void add_general(const backend::ChainRun &run, const backend::ChainPose &pose,
@@ -49,7 +45,6 @@ private:
 
   std::array<float, replicates> shift_{}; ///< of the thresholds by which chains are sampled
   std::vector<float> least_threshold_;    ///< per block
-  std::vector<std::uint16_t> free_p_, free_q_;
   backend::ChainData view_;
 };
 

@@ -26,8 +26,8 @@ void ChainLevel::set_thresholds(std::uint64_t seed, std::size_t first) {
   constexpr std::uint32_t doubt_stream = 0xC4B0;
   for (std::size_t r = 0; r < replicates; ++r)
     shift_[r] = static_cast<float>(uniform4(seed, doubt_stream, first + r)[0]);
-  least_threshold_.resize(blocks_);
-  for (std::size_t block = 0; block < blocks_; ++block) {
+  least_threshold_.resize(blocks());
+  for (std::size_t block = 0; block < blocks(); ++block) {
     const Thresholds all = thresholds(block);
     least_threshold_[block] = *std::min_element(all.begin(), all.end());
   }
@@ -58,7 +58,7 @@ void ChainLevel::sample(const backend::ChainSums &sums,
       const float part = (note.*of)[lane]; // where all are faint, the scale may be infinite
       const float chance = part > 0 ? std::min(1.0f, scale * part) : 0.0f;
       if (chance > threshold[lane])
-        chosen(runs_[run_of_[note.block]], note.block, lane, static_cast<double>(chance));
+        chosen(run_at(note.block), note.block, lane, static_cast<double>(chance));
     }
   }
 }
@@ -70,7 +70,7 @@ void ChainLevel::mend(const backend::ChainPose &pose, double error,
   const double doubt = sums.doubt;
   if (!(doubt > 0))
     return;
-  const double most = std::max(least_sample, largest_part * static_cast<double>(chains_)),
+  const double most = std::max(least_sample, largest_part * static_cast<double>(chains())),
                wanted = std::pow(doubt / (replicates * error), 2);
   sample(sums, &backend::ChainNote::doubt, &backend::ChainNote::most_doubt,
          std::clamp(wanted, least_sample, most) / doubt,

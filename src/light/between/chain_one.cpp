@@ -12,11 +12,6 @@ namespace {
 using Light = Stokes<ScatteringPlane>;
 using Matrix = Mueller<ScatteringPlane, ScatteringPlane>;
 
-Vec3<Body> vector_of(const float (&from)[3][backend::lanes], std::size_t lane) {
-  return {from[0][lane], from[1][lane], from[2][lane]};
-}
-Vec3<Body> vector_of(const float (&from)[3]) { return {from[0], from[1], from[2]}; }
-
 /// f (n.in), and the lobe's part of it, of light that comes from direction `in`.
 struct EndMatrices {
   Matrix whole, lobe;
@@ -89,7 +84,7 @@ void put(const Light &light, std::size_t lane, backend::ChainLight &to) {
 } // namespace
 
 bool ChainSet::faces(const OneChain &one, const backend::ChainPose &pose) const {
-  const backend::ChainBlock &at = block_[one.block];
+  const backend::ChainBlock &at = drawn_.block[one.block];
   return dot(vector_of((one.is_reversed ? at.q : at.p).normal, one.lane),
              vector_of(pose.observer)) > 0 &&
          dot(vector_of((one.is_reversed ? at.p : at.q).normal, one.lane), vector_of(pose.sun)) > 0;
@@ -98,13 +93,14 @@ bool ChainSet::faces(const OneChain &one, const backend::ChainPose &pose) const 
 void ChainSet::add_one(const OneChain &one, double free, const backend::ChainPose &pose,
                        backend::ChainSums &sums) const {
   const Vec3<Body> sun = vector_of(pose.sun), observer = vector_of(pose.observer);
-  const backend::ChainBlock &at = block_[one.block];
+  const backend::ChainBlock &at = drawn_.block[one.block];
   const auto end = [&](bool is_q) {
     const backend::ChainEnds &e = is_q ? at.q : at.p;
-    const auto &field = is_q ? field_q_ : field_p_; // of isotropic surfaces there is none
+    const std::uint32_t kind = is_q ? one.run.kind_q : one.run.kind_p;
     return GeneralEnd{vector_of(e.normal, one.lane), vector_of(e.along, one.lane),
-                      vector_of(e.axis, one.lane), field.empty() ? Vec3<Body>{} : field[one.at()],
-                      surfaces_.surface(is_q ? one.run.kind_q : one.run.kind_p)};
+                      vector_of(e.axis, one.lane),
+                      field_of(kind, (is_q ? drawn_.triangle_q : drawn_.triangle_p)[one.at()]),
+                      surfaces_.surface(kind)};
   };
   const GeneralChain chain{end(one.is_reversed), end(!one.is_reversed), one.is_reversed,
                            one.run.is_straight

@@ -1,6 +1,7 @@
 #include "light/between/chain_rays.h"
 
 #include "light/between/beam_axes.h"
+#include "light/between/chain_matrices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,6 @@
 
 namespace umov {
 namespace {
-
-using Light = Stokes<ScatteringPlane>;
-using Matrix = Mueller<ScatteringPlane, ScatteringPlane>;
 
 constexpr std::uint32_t shift_stream = 0xC4A1, walk_stream = 0xC4A2, look_stream = 0xC4E2,
                         thinning_stream = 0xC4A0 + 0x80;
@@ -28,19 +26,6 @@ std::array<double, 4> lattice(const std::array<double, 4> &shift, std::size_t in
     power /= root;
     const double x = shift[d] + power * static_cast<double>(index);
     out[d] = x - std::floor(x);
-  }
-  return out;
-}
-
-/// Light that travels along k, from axes s to axes t, as a matrix.
-Matrix turn_of(Vec3<Body> s, Vec3<Body> t, Vec3<Body> k) {
-  Matrix out;
-  for (std::size_t c = 0; c < 4; ++c) {
-    Light e{c == 0 ? 1.0 : 0, c == 1 ? 1.0 : 0, c == 2 ? 1.0 : 0, c == 3 ? 1.0 : 0};
-    e = turned(e, s, t, k);
-    const double column[4] = {e.i, e.q, e.u, e.v};
-    for (std::size_t r = 0; r < 4; ++r)
-      out.m[r][c] = column[r];
   }
   return out;
 }
@@ -62,15 +47,13 @@ struct ChainRays::Walk {
   Vertex first;
   Vec3<Body> along;
   double forward = 0, backward = 0;
-  std::vector<Matrix> matrix; ///< per band, to the axis of the first end
-  Vec3<Body> axis;            ///< that they start from, of the beam along -back
-  bool is_straight = true;
+  std::vector<ChainVertex> between;
+  std::vector<ChainMatrices> matrices; ///< of each member of the cover
 };
 
-ChainRays::ChainRays(const BounceScene &scene, const Occluder &occluder,
-                     const ChainSurfaces &surfaces, std::size_t bounces, std::uint64_t seed)
-    : scene_(scene), occluder_(occluder), surfaces_(surfaces), bounces_(bounces),
-      bands_(scene.scene().grid.nodes().size()), seed_(seed) {
+ChainRays::ChainRays(const BounceScene &scene, const Occluder &occluder, const ChainCover &cover,
+                     std::size_t bounces, std::uint64_t seed)
+    : scene_(scene), occluder_(occluder), cover_(cover), bounces_(bounces), seed_(seed) {
   double sum = 0;
   for (const bool is_back : {false, true})
     for (std::uint32_t t = 0; t < scene.areas().size(); ++t)
@@ -93,9 +76,8 @@ Vertex ChainRays::start(double x, double v) const {
 }
 
 ChainEnd ChainRays::end_at(const Vertex &at, Vec3<Body> along) const {
-  return {at.point,   at.face,    at.normal,
-          at.field,   along,      axis_of(at, along),
-          at.surface, at.sampler, surfaces_.kind_of(at.surface)};
+  return {at.point,           at.face,     at.normal, along,
+          axis_of(at, along), at.triangle, at.slot,   cover_.kind_of(at.slot)};
 }
 
 void ChainRays::put(const Walk &walk, const Vertex &last, Vec3<Body> back, ChainList &out) const {
@@ -104,53 +86,45 @@ void ChainRays::put(const Walk &walk, const Vertex &last, Vec3<Body> back, Chain
   Chain c;
   c.p = end_at(walk.first, walk.along);
   c.q = end_at(last, back);
-  if (surfaces_.part(c.p.kind, c.q.kind) == ChainPart::Nothing)
+  if (!cover_.is_any(c.p.kind, c.q.kind))
     return;
   c.from_p = walk.forward * bend_of(walk.first, walk.along);
   c.from_q = walk.backward * bend_of(last, back);
-  c.is_straight = walk.is_straight;
-  if (!walk.is_straight) {
-    c.matrix = static_cast<std::uint32_t>(out.between.size() / (16 * bands_));
-    const Matrix start = turn_of(c.q.axis, walk.axis, back);
-    c.transmitted = 0;
-    for (const Matrix &after : walk.matrix) {
-      const Matrix m = after * start;
-      for (const auto &row : m.m)
-        for (const double x : row)
-          out.between.push_back(static_cast<float>(x));
-      c.transmitted += m.m[0][0] / static_cast<double>(bands_);
-    }
-  }
+  c.first = static_cast<std::uint32_t>(out.between.size());
+  c.count = static_cast<std::uint32_t>(walk.between.size());
+  out.between.insert(out.between.end(), walk.between.begin(), walk.between.end());
+  for (const ChainMatrices &of : walk.matrices)
+    out.transmitted.push_back(c.count == 0 ? 1 : static_cast<float>(of.transmitted()));
   out.chains.push_back(c);
 }
 
 bool ChainRays::step(Walk &walk, Vertex &at, Vec3<Body> &back,
                      const std::array<double, 4> &u) const {
-  const Direction d = at.sampler->draw(at.normal, back, u[0], u[1], u[2]);
+  const Direction d = cover_.draw(at.slot, at.normal, back, u);
   Vertex to;
   double distance = 0;
   if (!(d.density > 0) || !scene_.next(occluder_, at, d.to, to, distance))
     return false;
-  const Vec3<Body> plane = plane_normal(back, d.to);
-  const double cosine = dot(at.normal, d.to);
-  if (!(cosine > 0) || !(dot(at.normal, back) > 0))
+  if (!(dot(at.normal, d.to) > 0) || !(dot(at.normal, back) > 0))
     return false;
-  const Matrix last = turn_of(plane, walk.axis, back);
-  const auto on =
-      directions_on(at.normal, at.field, d.to, back, std::clamp(dot(d.to, back), -1.0, 1.0), 0);
+  ChainVertex &kept = walk.between.emplace_back();
+  const auto put = [](Vec3<Body> from, float(&into)[3]) {
+    into[0] = static_cast<float>(from.x);
+    into[1] = static_cast<float>(from.y);
+    into[2] = static_cast<float>(from.z);
+  };
+  put(at.normal, kept.normal);
+  put(d.to, kept.to);
+  kept.density = static_cast<float>(d.density);
+  kept.triangle = at.triangle;
+  kept.slot = at.slot;
+  kept.is_by_mirror = d.is_by_mirror ? 1 : 0;
   double strongest = 0;
-  for (std::size_t b = 0; b < bands_; ++b) {
-    Matrix f = d.is_by_mirror ? at.surface->mueller(b, on.l_v) : at.surface->brdf(b, on);
-    const double scale = (d.is_by_mirror ? at.surface->mirror_part(b, cosine) : cosine) / d.density;
-    for (auto &row : f.m)
-      for (double &x : row)
-        x *= scale;
-    walk.matrix[b] = walk.matrix[b] * (last * f);
-    strongest = std::max(strongest, walk.matrix[b].m[0][0]);
+  for (ChainMatrices &of : walk.matrices) {
+    of.pass(kept);
+    strongest = std::max(strongest, of.strongest());
   }
   walk.backward *= bend_of(at, back) / bend_of(at, d.to);
-  walk.axis = plane;
-  walk.is_straight = false;
   at = to;
   back = -d.to;
   return strongest > 0;
@@ -162,6 +136,8 @@ ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t 
   const auto shift = uniform4(seed_, shift_stream, replicate);
   const double weight = pi * sum_.back() / static_cast<double>(count);
   Walk walk;
+  for (std::size_t m = 0; m < cover_.members(); ++m)
+    walk.matrices.emplace_back(cover_.sides(m), scene_.scene().mesh);
   for (std::size_t i = first; i < first + count && !is_stopped(cancel); ++i) {
     const auto x = lattice(shift, i);
     walk.first = start(x[0], x[1]);
@@ -174,9 +150,9 @@ ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t 
         !scene_.next(occluder_, walk.first, walk.along, at, distance))
       continue;
     walk.forward = walk.backward = weight;
-    walk.axis = axis_of(walk.first, walk.along);
-    walk.matrix.assign(bands_, turn_of(walk.axis, walk.axis, -walk.along));
-    walk.is_straight = true;
+    walk.between.clear();
+    for (ChainMatrices &of : walk.matrices)
+      of.start(axis_of(walk.first, walk.along), walk.along);
     Vec3<Body> back = -walk.along;
     put(walk, at, back, out);
     const std::uint64_t stream = (static_cast<std::uint64_t>(replicate) << 56U) + i;
@@ -190,22 +166,35 @@ ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t 
   return out;
 }
 
-double ChainRays::importance(const ChainEnd &end, const std::array<double, 4> &u,
-                             std::uint64_t stream) const {
+double ChainRays::freedom(const ChainEnd &end, const std::array<double, 4> &u,
+                          std::uint64_t stream) const {
   constexpr std::size_t looks = 4;
   std::size_t free = 0;
+  const std::vector<Sampler> &ways = cover_.samplers(end.slot);
   for (std::size_t k = 0; k < looks; ++k) {
     const auto x =
         k == 0 ? u : uniform4(seed_, look_stream + static_cast<std::uint32_t>(k), stream);
-    const Direction d = end.sampler->draw(end.normal, end.along, x[0], x[1], x[2]);
+    const Direction d = ways[k % ways.size()].draw(end.normal, end.along, x[0], x[1], x[2]);
     if (!(dot(d.to, end.face) > 0))
       continue;
     unsigned char is_free = 0;
     occluder_.is_free(std::span(&end.point, 1), d.to, std::span(&is_free, 1));
     free += is_free;
   }
-  return surfaces_.strength(end.kind, dot(end.normal, end.along)) *
-         std::sqrt((static_cast<double>(free) + 0.25) / looks);
+  return std::sqrt((static_cast<double>(free) + 0.25) / looks);
+}
+
+double ChainRays::strength(const ChainList &all, std::size_t chain) const {
+  const Chain &c = all.chains[chain];
+  const std::size_t members = cover_.members();
+  double square = 0;
+  for (std::size_t m = 0; m < members; ++m) {
+    const double one = static_cast<double>(all.transmitted[chain * members + m]) *
+                       cover_.strength(m, c.p.kind, dot(c.p.normal, c.p.along)) *
+                       cover_.strength(m, c.q.kind, dot(c.q.normal, c.q.along));
+    square += one * one / static_cast<double>(members);
+  }
+  return std::sqrt(square);
 }
 
 std::uint64_t likeness(const Chain &chain) {
@@ -216,7 +205,7 @@ std::uint64_t likeness(const Chain &chain) {
     const auto n = static_cast<std::uint64_t>(cells);
     return (f(a.x) * n + f(a.y)) * n + f(a.z);
   };
-  std::uint64_t out = chain.is_straight ? 0 : 1;
+  std::uint64_t out = chain.count == 0 ? 0 : 1;
   out = out << 12U | (chain.p.kind & 4095U);
   out = out << 12U | (chain.q.kind & 4095U);
   out = out << 9U | cell(chain.p.normal, 8);
@@ -233,9 +222,9 @@ ChainList ChainRays::thinned(const ChainList &all, std::size_t replicate, std::s
       return {};
     const Chain &c = all.chains[k];
     const std::uint64_t stream = 2 * (begin + k);
-    matters.push_back((c.from_p + c.from_q) * c.transmitted *
-                      importance(c.p, uniform4(seed_, look_stream, stream), stream) *
-                      importance(c.q, uniform4(seed_, look_stream, stream + 1), stream + 1));
+    matters.push_back((c.from_p + c.from_q) * strength(all, k) *
+                      freedom(c.p, uniform4(seed_, look_stream, stream), stream) *
+                      freedom(c.q, uniform4(seed_, look_stream, stream + 1), stream + 1));
   }
   // Chances are `scale` times what matters, at most 1, and add up to `kept`.
   double low = 0, high = 1e30;
@@ -264,11 +253,9 @@ ChainList ChainRays::thinned(const ChainList &all, std::size_t replicate, std::s
     Chain &c = out.chains.emplace_back(all.chains[k]);
     c.from_p /= chance;
     c.from_q /= chance;
-    if (c.is_straight)
-      continue;
-    const auto from = all.between.begin() + static_cast<std::ptrdiff_t>(c.matrix * 16 * bands_);
-    c.matrix = static_cast<std::uint32_t>(out.between.size() / (16 * bands_));
-    out.between.insert(out.between.end(), from, from + static_cast<std::ptrdiff_t>(16 * bands_));
+    const auto from = all.between.begin() + static_cast<std::ptrdiff_t>(c.first);
+    c.first = static_cast<std::uint32_t>(out.between.size());
+    out.between.insert(out.between.end(), from, from + static_cast<std::ptrdiff_t>(c.count));
   }
   return out;
 }

@@ -1,8 +1,9 @@
 #pragma once
 // Private: chains drawn over all pairs of points that see each other, and on from there.
 
+#include "light/between/bounce_scene.h"
 #include "light/between/chain.h"
-#include "light/between/chain_surfaces.h"
+#include "light/between/chain_cover.h"
 
 #include <atomic>
 #include <umov/shape/occluder.h>
@@ -12,7 +13,7 @@ namespace umov {
 /// Draws chains; what it is made from must live.
 class ChainRays {
 public:
-  ChainRays(const BounceScene &scene, const Occluder &occluder, const ChainSurfaces &surfaces,
+  ChainRays(const BounceScene &scene, const Occluder &occluder, const ChainCover &cover,
             std::size_t bounces, std::uint64_t seed);
 
   /// `count` rays of one replicate, from number `first` of its lattice on, and the chains of 2 to
@@ -21,7 +22,7 @@ public:
   [[nodiscard]] ChainList draw(std::size_t replicate, std::size_t first, std::size_t count,
                                const std::atomic<bool> *cancel) const;
   /// The same thinned to about `kept`, each as likely to stay as it matters over all poses, its
-  /// weight growing as it gets rarer, and evenly among like ones.
+  /// weight growing as it gets rarer, and evenly among like ones. Over all members of the cover.
   [[nodiscard]] ChainList thinned(const ChainList &all, std::size_t replicate, std::size_t first,
                                   std::size_t kept, const std::atomic<bool> *cancel) const;
 
@@ -33,13 +34,16 @@ private:
   /// One surface further: false where the walk ends.
   [[nodiscard]] bool step(Walk &walk, Vertex &at, Vec3<Body> &back,
                           const std::array<double, 4> &u) const;
-  [[nodiscard]] double importance(const ChainEnd &end, const std::array<double, 4> &u,
-                                  std::uint64_t stream) const;
+  /// Root of the part of an end's light that is free.
+  [[nodiscard]] double freedom(const ChainEnd &end, const std::array<double, 4> &u,
+                               std::uint64_t stream) const;
+  /// rms over the members of what a chain carries between all directions of its ends.
+  [[nodiscard]] double strength(const ChainList &all, std::size_t chain) const;
 
   const BounceScene &scene_;
   const Occluder &occluder_;
-  const ChainSurfaces &surfaces_;
-  std::size_t bounces_, bands_;
+  const ChainCover &cover_;
+  std::size_t bounces_;
   std::uint64_t seed_;
   std::vector<std::uint32_t> side_; ///< 2 * triangle + (1 for its back)
   std::vector<double> sum_;         ///< areas of the sides, added up

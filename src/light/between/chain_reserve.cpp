@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 #include <umov/core/random.h>
-#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -21,23 +20,17 @@ double picks_for(double direct_i, double all, double accuracy) {
 
 } // namespace
 
-ChainReserve::ChainReserve(const ChainRays &rays, const ChainSurfaces &surfaces,
-                           const Occluder &occluder, std::size_t bands, const ChainCount &count,
-                           std::uint64_t seed, unsigned threads, const std::atomic<bool> *cancel)
-    : ChainSet(surfaces, occluder, bands) {
-  const Drawn drawn = draw(rays, count, threads, cancel);
-  if (is_stopped(cancel))
-    return;
-  transmitted_.assign(blocks_ * replicates, 0);
-  for (const Placed &one : drawn.placed)
-    transmitted_[one.block * replicates + one.lane] = static_cast<float>(one.chain->transmitted);
+ChainReserve::ChainReserve(const ChainDrawn &drawn, const ChainMaterials &materials,
+                           unsigned threads, const std::atomic<bool> *cancel)
+    : ChainSet(drawn, materials, threads, cancel) {
   for (std::uint32_t run = 0; run < runs_.size(); ++run)
-    for (std::uint32_t first = 0; first < runs_[run].count; first += blocks_of_piece)
+    for (std::uint32_t first = 0; is_left_[run] == 0 && first < runs_[run].count;
+         first += blocks_of_piece)
       pieces_.push_back(
           {run, first, std::min<std::uint32_t>(blocks_of_piece, runs_[run].count - first)});
   for (std::size_t r = 0; r < replicates; ++r)
-    shift_[r] = uniform4(seed, pick_stream, r)[0];
-  view_ = {block_, matrix_, surfaces_.fast(), {}, bands_, transmitted_};
+    shift_[r] = uniform4(materials.drawing.seed(), pick_stream, r)[0];
+  view_ = {drawn.block, matrix_, surfaces_.fast(), {}, bands_, transmitted_};
 }
 
 void ChainReserve::weigh(const Piece &piece, const backend::ChainPose &pose, Weights &out) const {

@@ -12,8 +12,7 @@ class ChainReserve : public ChainSet {
 public:
   /// Of surfaces that the vector unit computes. Of no use once `cancel`, which may be null, became
   /// true.
-  ChainReserve(const ChainRays &rays, const ChainSurfaces &surfaces, const Occluder &occluder,
-               std::size_t bands, const ChainCount &count, std::uint64_t seed, unsigned threads,
+  ChainReserve(const ChainDrawn &drawn, const ChainMaterials &materials, unsigned threads,
                const std::atomic<bool> *cancel);
 
   /// What a pose was told from.
@@ -52,7 +51,6 @@ private:
                                            const backend::ChainPose &pose) const;
 
   std::vector<Piece> pieces_;
-  std::vector<float> transmitted_; ///< of I, [block * 16 + lane]
   std::array<double, replicates> shift_{};
   backend::ChainData view_;
 };

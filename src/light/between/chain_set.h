@@ -1,21 +1,17 @@
 #pragma once
-// Private: chains as poses ask them, by blocks of 16, one of each replicate.
+// Private: drawn chains of given materials as poses ask them.
 
-#include "backend/chain_data.h"
-#include "light/between/chain_rays.h"
-#include "light/between/replicates.h"
+#include "light/between/chain_drawn.h"
 
-#include <array>
 #include <umov/scene/pose.h>
 
 namespace umov {
 
-/// Cells per edge of the octahedron on which the ends' visibility is held.
-inline constexpr std::size_t chain_mask_cells = 32;
-
-/// How many chains there are, and where in each replicate's lattice their rays begin.
-struct ChainCount {
-  std::size_t first = 0, rays_per_replicate = 0, chains = 0;
+/// What chains are lit with.
+struct ChainMaterials {
+  const Scene &scene;
+  const ChainSurfaces &surfaces; ///< of the scene
+  const ChainDrawing &drawing;
 };
 
 /// Chains that stand in blocks, and the light of one of them. What it is made from must live.
@@ -23,26 +19,15 @@ class ChainSet {
 public:
   ChainSet(const ChainSet &) = delete; // views point into it
   ChainSet &operator=(const ChainSet &) = delete;
-  [[nodiscard]] std::size_t chains() const { return chains_; }
-  [[nodiscard]] std::size_t blocks() const { return blocks_; }
+  [[nodiscard]] std::size_t chains() const { return drawn_.chains; }
+  [[nodiscard]] std::size_t blocks() const { return drawn_.blocks; }
 
 protected:
-  ChainSet(const ChainSurfaces &surfaces, const Occluder &occluder, std::size_t bands)
-      : surfaces_(surfaces), occluder_(occluder), bands_(bands) {}
+  /// Matrices of what lies between the ends, without rays. Of no use once `cancel`, which may be
+  /// null, became true.
+  ChainSet(const ChainDrawn &drawn, const ChainMaterials &materials, unsigned threads,
+           const std::atomic<bool> *cancel);
   ~ChainSet() = default;
-
-  struct Placed {
-    std::size_t block, lane;
-    const Chain *chain;
-  };
-  struct Drawn {
-    std::vector<ChainList> lists;
-    std::vector<Placed> placed;
-  };
-  /// Draws the chains and puts them into blocks. Of no use once `cancel`, which may be null, became
-  /// true.
-  Drawn draw(const ChainRays &rays, const ChainCount &count, unsigned threads,
-             const std::atomic<bool> *cancel);
 
   /// A chain, in which direction it is taken, and what about its ends.
   struct OneChain {
@@ -59,24 +44,31 @@ protected:
   /// Whether both ends are free, by rays.
   [[nodiscard]] bool is_free(const OneChain &chain, const backend::ChainPose &pose) const;
   [[nodiscard]] const backend::ChainRun &run_at(std::size_t block) const {
-    return runs_[run_of_[block]];
+    return runs_[drawn_.run_of[block]];
   }
 
+  const ChainDrawn &drawn_;
   const ChainSurfaces &surfaces_;
   const Occluder &occluder_;
-  std::size_t bands_, chains_ = 0, blocks_ = 0;
-  std::vector<backend::ChainBlock> block_;
+  std::size_t bands_;
   std::vector<backend::ChainMatrix> matrix_;
-  std::vector<backend::ChainRun> runs_;
-  std::vector<std::uint32_t> run_of_;              ///< per block
-  std::vector<char> is_general_;                   ///< per run: lit one by one
-  std::vector<Vec3<Body>> field_p_, field_q_;      ///< if any is asked for, [block * 16 + lane]
-  std::vector<Occluder::Point> point_p_, point_q_; ///< where the ends lie, [block * 16 + lane]
+  std::vector<backend::ChainRun> runs_; ///< those of `drawn_`
+  std::vector<char> is_left_;           ///< per run: paths draw all of it
+  std::vector<char> is_general_;        ///< per run: lit one by one
+  std::vector<float> transmitted_;      ///< of I in the mean of the bands, [block * 16 + lane]
 
 private:
-  [[nodiscard]] std::vector<Placed> arrange(const std::vector<ChainList> &lists);
-  void fill(const std::vector<Placed> &placed, const std::vector<ChainList> &lists);
+  void put_runs(const ChainCover &cover, const Scene &scene);
+  void fill(const Scene &scene, unsigned threads, const std::atomic<bool> *cancel);
+  [[nodiscard]] Vec3<Body> field_of(std::uint32_t kind, std::uint32_t triangle) const;
+
+  const Mesh &mesh_;
 };
+
+/// Of one of 16 side by side.
+inline Vec3<Body> vector_of(const float (&from)[3][backend::lanes], std::size_t lane) {
+  return {from[0][lane], from[1][lane], from[2][lane]};
+}
 
 /// A pose as chains see it.
 backend::ChainPose chain_pose(const Pose &pose);

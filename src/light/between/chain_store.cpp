@@ -8,14 +8,6 @@
 namespace umov {
 namespace {
 
-/// Chains of each level, of all replicates; with the levels below they are four times as many as
-/// those.
-constexpr std::array<std::size_t, ChainStore::levels> chains_of{16'384, 49'152, 196'608};
-/// Rays for each chain that stays: most meet nothing, or do not matter.
-constexpr std::size_t rays_per_chain = 24;
-/// Chains of the reserve, and rays for each of them: it is for light that few chains meet, of which
-/// little is to be thinned away.
-constexpr std::size_t reserve_chains = 1'048'576, reserve_rays_per_chain = 6;
 /// Poses that are lit in turn by the chains that the cache has.
 constexpr std::size_t poses_together = 16;
 /// Fewer chains than this, counted by their light, (sum I)^2 / sum I^2, are too few to tell how far
@@ -29,21 +21,11 @@ constexpr double least_of_reserve = 24;
 /// anyway, or of that wanted.
 constexpr double mended_to = 0.5;
 
-constexpr double weight_of(std::size_t level) { return static_cast<double>(chains_of[level]); }
-constexpr double all_weights = std::accumulate(chains_of.begin(), chains_of.end(), 0.0);
-
-/// Of a level, or, after the last of them, of the reserve.
-ChainCount count_of(std::size_t level) {
-  const auto rays_of = [](std::size_t k) {
-    return (k < ChainStore::levels ? chains_of[k] * rays_per_chain
-                                   : reserve_chains * reserve_rays_per_chain) /
-           replicates;
-  };
-  ChainCount out{0, rays_of(level), level < ChainStore::levels ? chains_of[level] : reserve_chains};
-  for (std::size_t k = 0; k < level; ++k)
-    out.first += rays_of(k);
-  return out;
+constexpr double weight_of(std::size_t level) {
+  return static_cast<double>(ChainDrawing::chains_of[level]);
 }
+constexpr double all_weights =
+    std::accumulate(ChainDrawing::chains_of.begin(), ChainDrawing::chains_of.end(), 0.0);
 
 /// What is left of the error of visibility, in parts of the light: where the directions of a grid
 /// agree about what lies between them, and are wrong. At least this much, since few are asked
@@ -115,18 +97,18 @@ struct ChainStore::Climb {
   std::vector<double> narrow_i, narrow_squares; ///< per pose: of light between narrow lobes
 };
 
-ChainStore::ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
-                       std::uint64_t seed, const std::atomic<bool> *cancel)
-    : surfaces_(scene.scene()), rays_(scene, occluder, surfaces_, bounces, seed),
-      occluder_(occluder), grids_(scene.scene().mesh, Occluder::Rays::Grid, cancel),
-      bands_(scene.scene().grid.nodes().size()), seed_(seed) {}
+ChainStore::ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene &scene)
+    : drawing_(std::move(drawing)), surfaces_(scene), materials_{scene, surfaces_, *drawing_},
+      bands_(scene.grid.nodes().size()) {}
 
 const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
                                     const std::atomic<bool> *cancel) const {
   const WriteLock lock(mutex_);
   if (!level_[index]) {
-    auto made = std::make_unique<const ChainLevel>(rays_, surfaces_, occluder_, grids_, bands_,
-                                                   count_of(index), seed_, threads, cancel);
+    const ChainDrawn *drawn = drawing_->level(index, threads, cancel);
+    if (drawn == nullptr)
+      return nullptr;
+    auto made = std::make_unique<const ChainLevel>(*drawn, materials_, index, threads, cancel);
     if (is_stopped(cancel))
       return nullptr; // whoever asks next begins anew
     level_[index] = std::move(made);
@@ -137,8 +119,10 @@ const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
 const ChainReserve *ChainStore::reserve(unsigned threads, const std::atomic<bool> *cancel) const {
   const WriteLock lock(mutex_);
   if (!reserve_) {
-    auto made = std::make_unique<const ChainReserve>(rays_, surfaces_, occluder_, bands_,
-                                                     count_of(levels), seed_, threads, cancel);
+    const ChainDrawn *drawn = drawing_->reserve(threads, cancel);
+    if (drawn == nullptr)
+      return nullptr;
+    auto made = std::make_unique<const ChainReserve>(*drawn, materials_, threads, cancel);
     if (is_stopped(cancel))
       return nullptr;
     reserve_ = std::move(made);

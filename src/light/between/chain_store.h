@@ -13,14 +13,13 @@
 
 namespace umov {
 
-/// Chains of one body, in levels that are drawn when a pose first needs them. The bytes of an
-/// answer depend on scene, bounces and seed, not on threads or on what was asked before. Thread
-/// safe; what it is made from must live.
+/// Chains of one body and its materials, in levels that are made when a pose first needs them. The
+/// bytes of an answer depend on the scene and on what the chains were drawn for, not on threads or
+/// on what was asked before. Thread safe; what it is made from must live.
 class ChainStore {
 public:
-  /// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
-  ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
-             std::uint64_t seed, const std::atomic<bool> *cancel);
+  /// Chains that were drawn for this scene or serve it (ChainCover::serves).
+  ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene &scene);
 
   struct Answer {
     std::vector<IndirectLight> light;
@@ -34,7 +33,7 @@ public:
                              const IntegrationOptions &options, unsigned threads,
                              const std::atomic<bool> *cancel) const;
   [[nodiscard]] const ChainSurfaces &surfaces() const { return surfaces_; }
-  static constexpr std::size_t levels = 3;
+  static constexpr std::size_t levels = ChainDrawing::levels;
 
 private:
   struct Climb;
@@ -53,12 +52,10 @@ private:
                    const IntegrationOptions &options, Answer &answer, unsigned threads,
                    const std::atomic<bool> *cancel) const;
 
+  std::shared_ptr<const ChainDrawing> drawing_;
   ChainSurfaces surfaces_;
-  ChainRays rays_;
-  const Occluder &occluder_;
-  Occluder grids_; ///< for the many rays of the ends' visibility
+  ChainMaterials materials_;
   std::size_t bands_;
-  std::uint64_t seed_;
   mutable Mutex mutex_;
   mutable std::array<std::unique_ptr<const ChainLevel>, levels> level_;
   mutable std::unique_ptr<const ChainReserve> reserve_;

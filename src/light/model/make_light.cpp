@@ -196,8 +196,11 @@ namespace {
 /// As make_light; throws what keeps an engine from being made.
 Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> joints,
                                          const LightOptions &options,
-                                         const std::atomic<bool> *cancel) {
+                                         const std::atomic<bool> *cancel, ChainFamily family) {
   UMOV_TRY(check(options));
+  ChainSharing chains{std::move(family.also), nullptr};
+  if (family.elder && joints.empty() && options.between == BetweenMethod::Chains)
+    chains.elder = family.elder->chain_drawer(cancel);
   const bool has_rays = takes_rays(scene, joints, options, cancel);
   if (has_rays && options.device.choice == DeviceChoice::Cuda)
     return fail(ErrorCode::Usage, "rays are traced by the processor, and cards add up what masks "
@@ -214,17 +217,21 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
                             "its own. Leave the file out; the cache keeps them.",
                             options.mask_file.string()));
   if (has_rays)
-    return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i, cancel);
+    return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i, cancel,
+                                       std::move(chains));
   const double missed = curved_error(scene, *unhidden, typical_i, options.threads, cancel);
-  return MasksLight::make(scene, std::move(joints), options, std::move(typical_i), missed, cancel);
+  return MasksLight::make(scene, std::move(joints), options, std::move(typical_i), missed, cancel,
+                          std::move(chains));
 }
 
 } // namespace
 
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options,
-                                               const std::atomic<bool> *cancel) {
-  return without_failures([&] { return make(scene, std::move(joints), options, cancel); });
+                                               const std::atomic<bool> *cancel,
+                                               ChainFamily family) {
+  return without_failures(
+      [&] { return make(scene, std::move(joints), options, cancel, std::move(family)); });
 }
 
 Result<std::unique_ptr<LightModel>> make_light_for_many(const Scene &scene,

@@ -34,18 +34,17 @@ MasksLight::MasksLight(const Scene &of, std::vector<Joint> turning, const LightO
     : LightModel(of, std::move(turning)), options_(options), typical_i_(std::move(typical_i)),
       curved_error_(curved_error), material_of_(material_of_slots(scene(), materials())) {}
 
-Result<std::unique_ptr<LightModel>> MasksLight::make(const Scene &scene, std::vector<Joint> joints,
-                                                     const LightOptions &options,
-                                                     std::vector<double> typical_i,
-                                                     double curved_error,
-                                                     const std::atomic<bool> *cancel) {
+Result<std::unique_ptr<LightModel>>
+MasksLight::make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
+                 std::vector<double> typical_i, double curved_error,
+                 const std::atomic<bool> *cancel, ChainSharing chains) {
   std::unique_ptr<MasksLight> out(
       new MasksLight(scene, std::move(joints), options, std::move(typical_i), curved_error));
-  UMOV_TRY(out->prepare(cancel));
+  UMOV_TRY(out->prepare(cancel, std::move(chains)));
   return out;
 }
 
-Result<void> MasksLight::prepare(const std::atomic<bool> *cancel) {
+Result<void> MasksLight::prepare(const std::atomic<bool> *cancel, ChainSharing chains) {
   const auto start = std::chrono::steady_clock::now();
   const bool is_auto = options_.method == LightMethod::Auto;
   floor_i_ = floor_of(options_, typical_i_);
@@ -81,7 +80,7 @@ Result<void> MasksLight::prepare(const std::atomic<bool> *cancel) {
   facts_.visibility = in_words(facts_, with.masks);
   IntegrationOptions rays = integration_of(options_, floor_i_);
   if (options_.bounces > 1 && !facts_.is_convex)
-    between_.emplace(scene(), joints(), rays, materials());
+    between_.emplace(scene(), joints(), rays, materials(), std::move(chains));
   rays.bounces = 1;
   if (options_.max_points == 0)
     rays.max_points = most_points::beside_masks;

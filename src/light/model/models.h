@@ -27,7 +27,12 @@ double curved_error(const Scene &scene, const Engine &unhidden,
 class RaysLight final : public LightModel {
 public:
   RaysLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-            const std::vector<double> &typical_i, const std::atomic<bool> *cancel);
+            const std::vector<double> &typical_i, const std::atomic<bool> *cancel,
+            ChainSharing chains = {});
+  [[nodiscard]] std::shared_ptr<const Integrator>
+  chain_drawer(const std::atomic<bool> *cancel) const override {
+    return rays_.chain_drawer(cancel);
+  }
 
 private:
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
@@ -40,7 +45,12 @@ class MasksLight final : public LightModel {
 public:
   static Result<std::unique_ptr<LightModel>>
   make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-       std::vector<double> typical_i, double curved_error, const std::atomic<bool> *cancel);
+       std::vector<double> typical_i, double curved_error, const std::atomic<bool> *cancel,
+       ChainSharing chains = {});
+  [[nodiscard]] std::shared_ptr<const Integrator>
+  chain_drawer(const std::atomic<bool> *cancel) const override {
+    return between_ ? between_->chain_drawer(cancel) : nullptr;
+  }
   [[nodiscard]] Result<void> keep_masks() const override;
   void take_masks_of(const LightModel &elder) const override;
   /// Null for a body whose parts turn.
@@ -53,7 +63,7 @@ public:
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
              std::vector<double> typical_i, double curved_error);
-  Result<void> prepare(const std::atomic<bool> *cancel);
+  Result<void> prepare(const std::atomic<bool> *cancel, ChainSharing chains);
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
   Result<void> take_device();

@@ -37,16 +37,18 @@ std::vector<std::uint32_t> material_of_slots(const Scene &scene,
 }
 
 RayTracer::RayTracer(const Scene &scene, const std::vector<Joint> &joints,
-                     IntegrationOptions options, const std::vector<std::string> &materials)
+                     IntegrationOptions options, const std::vector<std::string> &materials,
+                     ChainSharing chains)
     : scene_(scene), joints_(joints), options_(std::move(options)),
-      material_of_(material_of_slots(scene, materials)), materials_(materials.size()) {
+      material_of_(material_of_slots(scene, materials)), materials_(materials.size()),
+      chains_(std::move(chains)) {
   if (!joints_.empty()) // another body at every pose: nothing to share
     options_.between = BetweenMethod::Paths;
 }
 
 const Integrator &RayTracer::integrator(const std::atomic<bool> *cancel) const {
-  std::call_once(is_made_,
-                 [&] { integrator_ = std::make_unique<const Integrator>(scene_, cancel); });
+  std::call_once(
+      is_made_, [&] { integrator_ = std::make_shared<const Integrator>(scene_, cancel, chains_); });
   return *integrator_;
 }
 

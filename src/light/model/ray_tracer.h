@@ -24,7 +24,7 @@ Scene turned(const Scene &scene, const std::vector<Joint> &joints,
 class RayTracer {
 public:
   RayTracer(const Scene &scene, const std::vector<Joint> &joints, IntegrationOptions options,
-            const std::vector<std::string> &materials);
+            const std::vector<std::string> &materials, ChainSharing chains = {});
   /// Fills the rows `which` of a table of all poses; false if it was cancelled.
   [[nodiscard]] bool light(std::span<const Pose> poses, std::span<const double> angles_rad,
                            std::span<const std::size_t> which, StokesTable &out,
@@ -35,6 +35,12 @@ public:
   /// Throws as Engine.
   [[nodiscard]] bool is_convex(const std::atomic<bool> *cancel) const {
     return joints_.empty() && integrator(cancel).is_convex();
+  }
+
+  /// Null where parts turn. Throws as Engine.
+  [[nodiscard]] std::shared_ptr<const Integrator>
+  chain_drawer(const std::atomic<bool> *cancel) const {
+    return joints_.empty() ? (integrator(cancel), integrator_) : nullptr;
   }
 
 private:
@@ -48,8 +54,9 @@ private:
   IntegrationOptions options_;
   std::vector<std::uint32_t> material_of_;
   std::size_t materials_;
+  ChainSharing chains_;
   mutable std::once_flag is_made_;
-  mutable std::unique_ptr<const Integrator> integrator_;
+  mutable std::shared_ptr<const Integrator> integrator_;
 };
 
 } // namespace umov

@@ -5,9 +5,11 @@
 namespace umov {
 
 RaysLight::RaysLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
-                     const std::vector<double> &typical_i, const std::atomic<bool> *cancel)
+                     const std::vector<double> &typical_i, const std::atomic<bool> *cancel,
+                     ChainSharing chains)
     : LightModel(of, std::move(turning)),
-      rays_(scene(), joints(), integration_of(options, floor_of(options, typical_i)), materials()) {
+      rays_(scene(), joints(), integration_of(options, floor_of(options, typical_i)), materials(),
+            std::move(chains)) {
   facts_.floor_i = of_bands(floor_of(options, typical_i));
   facts_.method = LightMethod::Rays;
   facts_.is_convex = rays_.is_convex(cancel);

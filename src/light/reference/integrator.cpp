@@ -28,11 +28,22 @@ struct PathGround {
   const Occluder &occluder;
 };
 
+/// Slots of the one are slots of the other.
+bool is_on_mesh_of(const Scene &a, const Scene &b) {
+  const auto is_alike = [](const Triangle &s, const Triangle &t) {
+    return s.vertex == t.vertex && s.normal == t.normal && s.front == t.front && s.back == t.back;
+  };
+  const auto &x = a.mesh.triangles, &y = b.mesh.triangles;
+  return a.normals == b.normals && a.front.size() == b.front.size() &&
+         std::equal(x.begin(), x.end(), y.begin(), y.end(), is_alike) &&
+         a.mesh.positions == b.mesh.positions && a.mesh.normals == b.mesh.normals;
+}
+
 } // namespace
 
 struct Integrator::State {
-  State(const Scene &of, const std::atomic<bool> *cancel)
-      : scene(of), is_convex(is_proven_convex(of.mesh, cancel)),
+  State(const Scene &of, const std::atomic<bool> *cancel, ChainSharing shared)
+      : scene(of), sharing(std::move(shared)), is_convex(is_proven_convex(of.mesh, cancel)),
         sides(visible_sides(of.mesh, cancel)), elements(make_elements(scene, sides, cancel)) {
     if (!is_convex)
       occluder.emplace(scene.mesh, Occluder::Rays::Each, cancel);
@@ -55,32 +66,67 @@ struct Integrator::State {
     const PathGround ground = paths(cancel);
     const WriteLock lock(store_mutex);
     auto &store = stores[{options.bounces, options.seed}];
-    if (!store)
-      store = std::make_unique<const ChainStore>(ground.scene, ground.occluder, options.bounces,
-                                                 options.seed, cancel);
+    if (!store) {
+      auto drawing = taken({options.bounces, options.seed}, cancel);
+      if (!drawing)
+        drawing = own_drawing({options.bounces, options.seed}, ground, cancel);
+      store = std::make_unique<const ChainStore>(std::move(drawing), scene);
+    }
     return store->surfaces().has_any() ? store.get() : nullptr;
+  }
+  /// How many surfaces, and the seed.
+  using ChainKey = std::pair<std::size_t, std::uint64_t>;
+  /// The elder's chains; null where they do not serve.
+  std::shared_ptr<const ChainDrawing> taken(ChainKey key, const std::atomic<bool> *cancel) const {
+    if (!sharing.elder || !is_on_mesh_of(scene, sharing.elder->state_->scene))
+      return nullptr;
+    const State &elder = *sharing.elder->state_;
+    const PathGround ground = elder.paths(cancel);
+    const WriteLock lock(elder.store_mutex);
+    auto drawing = elder.own_drawing(key, ground, cancel);
+    return drawing->cover().serves(scene, ChainSurfaces(scene)) ? drawing : nullptr;
   }
 
   Scene scene;
+  ChainSharing sharing;
   bool is_convex;
   std::vector<VisibleSides> sides;
   Elements elements;
   mutable std::optional<Occluder> occluder; ///< direct light of a convex mesh does not ask for it
 
 private:
+  /// Under the mutex.
+  std::shared_ptr<const ChainDrawing> own_drawing(ChainKey key, const PathGround &ground,
+                                                  const std::atomic<bool> *cancel) const {
+    auto &drawing = drawings[key];
+    if (!drawing) {
+      std::vector<const Scene *> materials{&scene};
+      for (const Scene &other : sharing.also)
+        if (is_on_mesh_of(other, scene))
+          materials.push_back(&other);
+      drawing = std::make_shared<const ChainDrawing>(ground.scene, ground.occluder, materials,
+                                                     key.first, key.second, cancel);
+    }
+    return drawing;
+  }
   mutable std::once_flag has_bounces;
   mutable std::optional<BounceScene> bounces;
   mutable Mutex store_mutex;
-  mutable std::map<std::pair<std::size_t, std::uint64_t>, std::unique_ptr<const ChainStore>> stores;
+  mutable std::map<ChainKey, std::shared_ptr<const ChainDrawing>> drawings;
+  mutable std::map<ChainKey, std::unique_ptr<const ChainStore>> stores;
 };
 
-Integrator::Integrator(const Scene &scene, const std::atomic<bool> *cancel)
-    : state_(std::make_unique<State>(scene, cancel)) {}
+Integrator::Integrator(const Scene &scene, const std::atomic<bool> *cancel, ChainSharing sharing)
+    : state_(std::make_unique<State>(scene, cancel, std::move(sharing))) {}
 Integrator::~Integrator() = default;
 Integrator::Integrator(Integrator &&) noexcept = default;
 Integrator &Integrator::operator=(Integrator &&) noexcept = default;
 
 bool Integrator::is_convex() const { return state_->is_convex; }
+
+bool Integrator::takes_chains(std::size_t bounces, std::uint64_t seed) const {
+  return state_->taken({bounces, seed}, nullptr) != nullptr;
+}
 
 /// Throws Failure where it is stopped.
 PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &options,
