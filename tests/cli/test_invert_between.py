@@ -1,6 +1,7 @@
 """umov invert with light between surfaces in the fit: data by paths, of a body a quarter of whose light touches several surfaces;
 the fit interpolates what chains light (docs/theory/inverse.md, 6.1). Truth is known from how the data were made."""
 import json
+import resource
 
 from test_invert import apart, in_set, observe, scene  # noqa: F401
 
@@ -51,3 +52,29 @@ def test_an_attitude_is_found_by_light_that_touched_several_surfaces(umov, scene
     bytes_of = {name: (tmp_path / "answer" / name).read_bytes() for name in ("modes.ecsv", "set95.ecsv", "samples.ecsv")}
     ask(umov, tmp_path, "--set", "render.bounces=3", "--threads", 1)
     assert all((tmp_path / "answer" / name).read_bytes() == content for name, content in bytes_of.items())
+
+
+def test_chains_are_drawn_once_for_all_materials(umov, scene, tmp_path):
+    """Of four metals on the panels, one of them true; each candidate took a drawing of its own."""
+    assert umov("mesh", "make", "box-wing", "--facets", 600, "-o", "wing.obj", "-q").code == 0
+    truth = body(umov, scene, tmp_path, TRUTH, "rays", "truth")
+    assert umov("run", truth, "-q", "--set", "render.bounces=3").code == 0
+    observe(tmp_path, "obs.csv", 100, 1)
+    body(umov, scene, tmp_path, TRUTH, "auto", "fit")
+
+    def ask(*words):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = umov("invert", *words, "--scenario", "fit.toml", "-o", "answer", "--force", "--json", "--set", "render.bounces=3",
+                    "--set", "render.between=chains")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        assert done.code == 0, done.err
+        return json.loads(done.out), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    _, of_two = ask("material", "obs.csv", "--group", "panels", "--candidates", "silicon,gold")
+    found, of_four = ask("material", "obs.csv", "--group", "panels", "--candidates", "gold,silicon,aluminium,smooth")
+    assert of_four < 1.6 * of_two  # twice as much with a drawing each; direct light is made for each
+    assert found["verdict"] == "determined"
+    probability = {"|".join(one["materials"]): one["probability"] for one in found["materials"]}
+    assert probability["silicon"] > 0.95 and sum(probability.values()) > 0.999
+    health, _ = ask("health", "obs.csv", "--drift", "panels=gold")
+    assert health["verdict"] == "determined"  # nothing has changed, and a change would have shown

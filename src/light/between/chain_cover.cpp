@@ -29,25 +29,39 @@ bool is_alike(const Sampler &a, const Sampler &b) {
          a.normals.form.kind == b.normals.form.kind && a.normals.form.shape == b.normals.form.shape;
 }
 
-/// Light that goes into the mirror image about a normal tilted by an angle, in the plane of
-/// incidence and across: what a lobe and its surroundings are told by.
-std::vector<std::array<Vec3<Body>, 2>> probes() {
-  std::vector<std::array<Vec3<Body>, 2>> out;
+/// Light from a direction, and where it goes: the mirror images about normals tilted by some angles
+/// in the plane of incidence and across, which tell a lobe and its surroundings.
+struct Probe {
+  Vec3<Body> from;
+  std::vector<Vec3<Body>> to = {};
+};
+
+std::vector<Probe> probes() {
+  std::vector<Probe> out;
   for (const double cosine : {0.95, 0.6, 0.2}) {
-    const Vec3<Body> from{std::sqrt(1 - cosine * cosine), 0, cosine};
+    Probe &probe = out.emplace_back(Probe{{std::sqrt(1 - cosine * cosine), 0, cosine}});
     for (const double tilt : {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 0.8})
-      for (const bool is_across : {false, true}) {
-        const Vec3<Body> about = is_across ? Vec3<Body>{0, std::sin(tilt), std::cos(tilt)}
-                                           : Vec3<Body>{std::sin(tilt), 0, std::cos(tilt)};
-        const Vec3<Body> to = mirrored(from, about);
-        if (to.z > 0.02)
-          out.push_back({from, to});
-      }
+      for (const Vec3<Body> about : {Vec3<Body>{std::sin(tilt), 0, std::cos(tilt)},
+                                     Vec3<Body>{0, std::sin(tilt), std::cos(tilt)}})
+        if (const Vec3<Body> to = mirrored(probe.from, about); to.z > 0.02)
+          probe.to.push_back(to);
   }
   return out;
 }
 
-/// Nowhere, and in no band, more than a few times as much as in the mean of the other's bands.
+/// How many times as much as the other in the mean of its bands, of the light from a direction; no
+/// less than 1. What is as much brighter everywhere has as much fewer chains, and half-widths know.
+double times_as_much(const Surface &surface, std::size_t band, const Surface &old,
+                     std::size_t old_bands, Vec3<Facet> from) {
+  constexpr double most = 32;
+  double mean = 0;
+  for (std::size_t b = 0; b < old_bands; ++b)
+    mean += old.albedo(b, from) / static_cast<double>(old_bands);
+  return mean > 0 ? std::clamp(surface.albedo(band, from) / mean, 1.0, most) : 1;
+}
+
+/// Nowhere, and in no band, a few times as much as the other in the mean of its bands beyond that:
+/// of what goes where the other sends little few chains would carry most, and no half-width tell.
 bool is_within(const Surface &surface, const Surface &old, std::size_t bands,
                std::size_t old_bands) {
   constexpr double most = 8;
@@ -56,20 +70,26 @@ bool is_within(const Surface &surface, const Surface &old, std::size_t bands,
   if (surface.has_mirror() && !old.has_mirror())
     return false;
   const Vec3<Body> normal{0, 0, 1}, field{1, 0, 0};
-  for (const auto &[from, to] : probes()) {
-    const auto on = directions_on(normal, field, from, to, dot(from, to), 0);
-    double mean = 0;
+  for (const auto &[from, all_to] : probes()) {
+    std::vector<double> allowed;
+    for (std::size_t b = 0; b < bands; ++b)
+      allowed.push_back(most * times_as_much(surface, b, old, old_bands, {from.x, from.y, from.z}));
+    double mirrored = 0;
     for (std::size_t b = 0; b < old_bands; ++b)
-      mean += old.brdf(b, on).m[0][0] / static_cast<double>(old_bands);
+      mirrored += old.mirror_part(b, from.z) * old.reflection(b, from.z).a;
     for (std::size_t b = 0; b < bands; ++b)
-      if (surface.brdf(b, on).m[0][0] > most * mean)
+      if (surface.mirror_part(b, from.z) * surface.reflection(b, from.z).a >
+          allowed[b] * mirrored / static_cast<double>(old_bands))
         return false;
-    if (!surface.has_mirror())
-      continue;
-    for (std::size_t b = 0; b < bands; ++b)
-      if (surface.mirror_part(b, from.z) * surface.mueller(b, 2 * from.z * from.z - 1).m[0][0] >
-          most * old.mirror_part(0, from.z) * old.mueller(0, 2 * from.z * from.z - 1).m[0][0])
-        return false;
+    for (const Vec3<Body> &to : all_to) {
+      const auto on = directions_on(normal, field, from, to, dot(from, to), 0);
+      double sum = 0;
+      for (std::size_t b = 0; b < old_bands; ++b)
+        sum += old.brdf(b, on).m[0][0];
+      for (std::size_t b = 0; b < bands; ++b)
+        if (surface.brdf(b, on).m[0][0] > allowed[b] * sum / static_cast<double>(old_bands))
+          return false;
+    }
   }
   return true;
 }

