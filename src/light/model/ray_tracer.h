@@ -40,7 +40,10 @@ public:
   /// Null where parts turn. Throws as Engine.
   [[nodiscard]] std::shared_ptr<const Integrator>
   chain_drawer(const std::atomic<bool> *cancel) const {
-    return joints_.empty() ? (integrator(cancel), integrator_) : nullptr;
+    if (!joints_.empty())
+      return nullptr;
+    (void)integrator(cancel); // made by whoever asks first
+    return integrator_;
   }
 
 private:
