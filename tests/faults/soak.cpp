@@ -4,13 +4,15 @@
 // umov_soak light SECONDS SCENARIO     one model asked for thousands of poses, models made anew,
 //                                      jobs that are cancelled, inputs that are wrong
 //
-// A line every round: seconds, resident bytes, open descriptors, threads.
+// A line every round: seconds, resident bytes, open descriptors, threads, bytes that were asked for
+// and not given back. Where these stay the same, resident memory that grows is the allocator's.
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
+#include <malloc.h>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +31,11 @@ std::size_t resident_bytes() {
   std::size_t size = 0, resident = 0;
   file >> size >> resident;
   return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+std::size_t used_bytes() {
+  const struct mallinfo2 now = ::mallinfo2();
+  return now.uordblks + now.hblkhd;
 }
 
 std::size_t entries(const char *folder) {
@@ -146,8 +153,8 @@ int main(int argc, char **argv) {
     else
       passes_round(input);
     now = std::chrono::duration<double>(Clock::now() - begin).count();
-    fmt::print("{:.2f} {} {} {}\n", now, resident_bytes(), entries("/proc/self/fd"),
-               entries("/proc/self/task"));
+    fmt::print("{:.2f} {} {} {} {}\n", now, resident_bytes(), entries("/proc/self/fd"),
+               entries("/proc/self/task"), used_bytes());
     std::fflush(stdout);
   }
   return 0;

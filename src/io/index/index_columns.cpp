@@ -109,10 +109,12 @@ Result<void> check_row(const Row &row, std::size_t columns, double before,
                 where);
   for (const std::string &word : row.words)
     if (!parse_number(word))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("\"{}\" is no finite number; wavelength, n{} were expected",
-                              printable(word.substr(0, 40)), columns == 3 ? " and k" : ""),
-                  where);
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("\"{}\" is no finite number; wavelength, n{} were expected. Correct the "
+                      "row, or leave it out",
+                      printable(word.substr(0, 40)), columns == 3 ? " and k" : ""),
+          where);
   const double wavelength = *parse_number(row.words[0]), n = *parse_number(row.words[1]);
   const double k = columns == 3 ? *parse_number(row.words[2]) : 0;
   if (!(wavelength > before))
@@ -123,10 +125,16 @@ Result<void> check_row(const Row &row, std::size_t columns, double before,
                            : fmt::format("wavelength {:g}; one above 0 was expected", wavelength),
                 where);
   if (!(n > 0) || !(k >= 0))
-    return fail(ErrorCode::BadInput,
-                n > 0 ? fmt::format("k = {:g}; 0 or more was expected (n + ik, k > 0 absorbs)", k)
-                      : fmt::format("n = {:g}; a positive number was expected", n),
-                where);
+    return fail(
+        ErrorCode::BadInput,
+        n > 0
+            ? fmt::format("k = {:g}; 0 or more was expected (n + ik, k > 0 absorbs). Turn the "
+                          "sign of k where a table is of n - ik",
+                          k)
+            : fmt::format("n = {:g}; a positive number was expected. Correct the row, or leave it "
+                          "out",
+                          n),
+        where);
   return {};
 }
 

@@ -101,21 +101,20 @@ Result<std::optional<std::uint32_t>> Reader::index(std::string_view text, const 
     if (value < 0 && value >= -size)
       return std::optional(static_cast<std::uint32_t>(size + value));
   }
+  std::string found = fmt::format("{} index \"{}\"", what, mesh_io::clean_name(text.substr(0, 40)));
+  if (text != word.text)
+    found += fmt::format(" in \"{}\"", mesh_io::clean_name(word.text.substr(0, 40)));
+  constexpr const char *mend = "Correct it, or export the mesh again";
   if (size == 0)
     return fail(ErrorCode::BadInput,
-                fmt::format("{} index \"{}\" in \"{}\", but no {} precedes this line", what,
-                            mesh_io::clean_name(text.substr(0, 40)),
-                            mesh_io::clean_name(word.text.substr(0, 40)), what),
+                fmt::format("{}, but no {} precedes this line. {}", found, what, mend),
                 lines_.where(word));
-  return fail(
-      ErrorCode::BadInput,
-      fmt::format("{} index \"{}\" in \"{}\"; 1 to {} (or -1 to -{}) was expected, since {} "
-                  "{}{} precede this line",
-                  what, mesh_io::clean_name(text.substr(0, 40)),
-                  mesh_io::clean_name(word.text.substr(0, 40)), size, size, size,
-                  what == std::string_view("vertex") ? "vertices" : what,
-                  what == std::string_view("vertex") ? "" : "s"),
-      lines_.where(word));
+  const bool is_vertex = what == std::string_view("vertex");
+  return fail(ErrorCode::BadInput,
+              fmt::format("{}; 1 to {} (or -1 to -{}) was expected, with {} above this line. {}",
+                          found, size, size,
+                          counted(count, what, is_vertex ? "vertices" : std::string_view()), mend),
+              lines_.where(word));
 }
 
 Result<Corner> Reader::corner(const Word &word) {
@@ -127,7 +126,8 @@ Result<Corner> Reader::corner(const Word &word) {
     more = slash != std::string_view::npos;
     if (count == 3 || (more && slash + 1 == rest.size()))
       return fail(ErrorCode::BadInput,
-                  fmt::format("corner \"{}\"; v, v/t, v//n or v/t/n was expected",
+                  fmt::format("corner \"{}\"; v, v/t, v//n or v/t/n was expected. Correct it, or "
+                              "export the mesh again",
                               mesh_io::clean_name(word.text.substr(0, 40))),
                   lines_.where(word));
     parts[count] = rest.substr(0, slash);
@@ -138,7 +138,12 @@ Result<Corner> Reader::corner(const Word &word) {
   UMOV_ASSIGN(texture, index(parts[1], word, polygons_.textures.size(), "texture coordinate"));
   UMOV_ASSIGN(normal, index(parts[2], word, out_.mesh.normals.size(), "normal"));
   if (!vertex)
-    return fail(ErrorCode::BadInput, "a corner without a vertex index", lines_.where(word));
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("corner \"{}\" has no vertex; v, v/t, v//n or v/t/n was expected. Correct "
+                    "it, or export the mesh again",
+                    mesh_io::clean_name(word.text.substr(0, 40))),
+        lines_.where(word));
   out.vertex = *vertex;
   out.normal = normal.value_or(no_index);
   out.texture = texture.value_or(no_index);

@@ -229,8 +229,8 @@ Result<PiecewiseLaw> read_pieces(const Node &node, const std::filesystem::path &
   PiecewiseLaw law;
   for (const toml::node &item : *node.get("pieces")->as_array()) {
     if (!item.is_table())
-      return fail(ErrorCode::BadInput, "pieces: a list of tables was expected",
-                  node.where("pieces"));
+      return no_table("pieces", item, "tables such as { from = ..., mode = \"nadir\" }",
+                      node.where("pieces"));
     const Node piece(*item.as_table(), "object.attitude", "object.attitude.pieces", node.file());
     UMOV_TRY(piece.check());
     UMOV_ASSIGN(from, piece.time("from"));

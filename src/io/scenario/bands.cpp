@@ -39,9 +39,12 @@ Result<BandEntry> read_entry(const Node &bands, const toml::node &item) {
                             *number),
                 bands.where("set"));
   if (!item.is_string())
-    return fail(ErrorCode::BadInput,
-                "set: a name, a table { file = \"x.csv\" }, or a list of both was expected",
-                bands.where("set"));
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("set holds {}; a name, a table {{ file = \"x.csv\" }}, or a list of both "
+                    "was expected",
+                    described(item)),
+        bands.where("set"));
   return BandEntry{item.value_or(std::string()), {}};
 }
 

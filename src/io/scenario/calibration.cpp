@@ -67,7 +67,13 @@ Result<PhotometricCalibration> read_photometry(const Node &node) {
                           return std::abs(value) <= most * most;
                         });
   if (!is_whole)
-    return fail(ErrorCode::BadInput, "covariance: 16 numbers, row by row, were expected",
+    return fail(ErrorCode::BadInput,
+                numbers.size() != 16
+                    ? fmt::format("covariance has {}; 16 numbers, row by row, were expected",
+                                  counted(numbers.size(), "number"))
+                    : fmt::format("covariance holds a number beyond {0:g} or below -{0:g}; mag2 "
+                                  "were expected, row by row",
+                                  most * most),
                 node.where("covariance"));
   for (std::size_t k = 0; k < 16; ++k)
     out.covariance[k / 4][k % 4] = numbers[k];
@@ -76,9 +82,13 @@ Result<PhotometricCalibration> read_photometry(const Node &node) {
       const auto &c = out.covariance;
       const double most_of_it = c[a][a] * c[b][b] * (1 + 1e-9);
       if (c[a][a] < 0 || c[a][b] != c[b][a] || c[a][b] * c[a][b] > most_of_it)
-        return fail(ErrorCode::BadInput,
-                    "covariance: a symmetric matrix without correlations above 1 was expected",
-                    node.where("covariance"));
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("covariance: numbers {} and {} of the matrix's diagonal are {:g} and "
+                        "{:g}, between them stand {:g} and {:g}; a symmetric matrix without "
+                        "correlations above 1 was expected",
+                        a + 1, b + 1, c[a][a], c[b][b], c[a][b], c[b][a]),
+            node.where("covariance"));
     }
   return out;
 }

@@ -70,8 +70,8 @@ Result<std::vector<Layer>> read_layers(const Node &node) {
   for (const toml::node &item : *list) {
     const toml::table *table = item.as_table();
     if (table == nullptr)
-      return fail(ErrorCode::BadInput, "layers: tables { index, thickness_nm } were expected",
-                  node.where("layers"));
+      return no_table("layers", item, "tables such as { index = \"SiO2\", thickness_nm = 100 }",
+                      node.where("layers"));
     const Node layer(*table, "material.layers", node.label() + ".layers", node.file());
     UMOV_TRY(layer.check());
     UMOV_TRY(layer.require("thickness_nm"));
@@ -225,7 +225,9 @@ std::map<std::string, Material> read_material_tables(const Node &top, Problems &
       if (problems.went(node.check()))
         material = problems.taken(read_material_table(node, name), std::move(material));
     } else {
-      problems.add({ErrorCode::BadInput, "a table [material." + name + "] was expected",
+      problems.add({ErrorCode::BadInput,
+                    fmt::format("material.{0} is {1}; a table [material.{0}] was expected", name,
+                                described(value)),
                     place_of(key.source(), top.file())});
     }
     out.emplace(name, std::move(material));

@@ -63,6 +63,19 @@ std::string shown(const toml::node &node) {
   return {};
 }
 
+} // namespace
+
+std::string described(const toml::node &value) { return name_of(value) + shown(value); }
+
+tl::unexpected<Error> no_table(const char *list, const toml::node &item, const char *expected,
+                               Where where) {
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} holds {}; {} were expected", list, described(item), expected),
+              std::move(where));
+}
+
+namespace {
+
 /// How a word that stands in place of a table is written in one: the file or the mode that it
 /// names.
 std::string in_a_table(const std::string &below, const std::string &name, const toml::node &value) {
@@ -124,8 +137,8 @@ std::optional<Error> Node::problem_of(const toml::key &key, const toml::node &va
   }
   if (!is_of(value, spec->kind))
     return problem(
-        fmt::format("{} is {}{}; {} was expected ({}){}", name, name_of(value), shown(value),
-                    to_text(spec->kind), spec->text,
+        fmt::format("{} is {}; {} was expected ({}){}", name, described(value), to_text(spec->kind),
+                    spec->text,
                     spec->kind == Kind::Table
                         ? in_a_table(schema_.empty() ? name : schema_ + "." + name, name, value)
                         : std::string()),
@@ -325,17 +338,20 @@ Result<std::vector<double>> Node::numbers(const char *name) const {
       out.push_back(*number);
     return number && std::isfinite(*number) && item.is_number();
   };
-  bool fine = true;
+  const auto refuse = [&](const std::string &found) {
+    return fail(ErrorCode::BadInput,
+                fmt::format("{}; a finite number or a list of them was expected", found),
+                where(name));
+  };
   if (const toml::array *list = node.as_array()) {
     for (const toml::node &item : *list)
-      fine = fine && take(item);
-  } else {
-    fine = take(node);
+      if (!take(item))
+        return refuse(fmt::format("{} holds {}", name, described(item)));
+  } else if (!take(node)) {
+    return refuse(fmt::format("{} is {}", name, described(node)));
   }
-  if (!fine || out.empty())
-    return fail(ErrorCode::BadInput,
-                fmt::format("{}: a finite number or a list of them was expected", name),
-                where(name));
+  if (out.empty())
+    return refuse(fmt::format("{} is an empty list", name));
   return out;
 }
 
@@ -343,19 +359,23 @@ Result<std::vector<std::string>> Node::strings(const char *name) const {
   UMOV_TRY(require(name));
   const toml::node &node = *table_->get(name);
   std::vector<std::string> out;
-  bool fine = true;
+  const auto refuse = [&](const char *verb, const toml::node &found) {
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} {} {}; a string or a list of strings was expected", name, verb,
+                            described(found)),
+                where(name));
+  };
   if (const toml::array *list = node.as_array()) {
     for (const toml::node &item : *list) {
-      fine = fine && item.is_string();
+      if (!item.is_string())
+        return refuse("holds", item);
       out.push_back(item.value_or(std::string()));
     }
+  } else if (!node.is_string()) {
+    return refuse("is", node);
   } else {
-    fine = node.is_string();
     out.push_back(node.value_or(std::string()));
   }
-  if (!fine)
-    return fail(ErrorCode::BadInput,
-                fmt::format("{}: a string or a list of strings was expected", name), where(name));
   return out;
 }
 
@@ -364,7 +384,7 @@ Result<Node> Node::child(const char *name, const char *schema) const {
   const toml::table *below = table_->get_as<toml::table>(name);
   if (below == nullptr)
     return fail(ErrorCode::BadInput,
-                fmt::format("{} is {}; a table was expected", name, name_of(*table_->get(name))),
+                fmt::format("{} is {}; a table was expected", name, described(*table_->get(name))),
                 where(name));
   Node out(*below, schema != nullptr ? schema : schema_ + (schema_.empty() ? "" : ".") + name,
            label_ + (label_.empty() ? "" : ".") + name, file_);

@@ -105,6 +105,12 @@ template <class T> Result<T> named_in(Result<T> read, const Where &at) {
   return read ? std::move(read) : tl::unexpected(named(read.error(), at));
 }
 
+/// What stands there, as messages say it: "a number, 4".
+std::string described(const toml::node &value);
+/// BadInput: an item of a list that is no table.
+tl::unexpected<Error> no_table(const char *list, const toml::node &item, const char *expected,
+                               Where where);
+
 /// Place of a node or key; values of --set carry their own source name.
 Where place_of(const toml::source_region &source, const std::string &file);
 /// Place of a value; of its key where that is all one knows.

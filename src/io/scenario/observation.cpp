@@ -228,9 +228,8 @@ Result<void> read_sequence(const Node &node, ScenarioObservation &out) {
     return {};
   for (const toml::node &item : *node.get("sequence")->as_array()) {
     if (!item.is_table())
-      return fail(ErrorCode::BadInput,
-                  "sequence: tables such as { analyser_deg = 45 } were expected",
-                  node.where("sequence"));
+      return no_table("sequence", item, "tables such as { analyser_deg = 45 }",
+                      node.where("sequence"));
     const Node step(*item.as_table(), "observation.sequence", "observation.sequence", node.file());
     UMOV_TRY(step.check());
     out.sequence.push_back(

@@ -153,7 +153,9 @@ Result<void> read_port(const Node &node, Telescope &out) {
   }
   if (!value.is_string())
     return fail(ErrorCode::BadInput,
-                "port: a name, or { mirrors = [\"right\", \"down\"] }, was expected",
+                fmt::format("port is {}; a name, or {{ mirrors = [\"right\", \"down\"] }}, was "
+                            "expected",
+                            described(value)),
                 node.where("port"));
   UMOV_ASSIGN(port,
               node.choice("port", port_names[0], {port_names[0], port_names[1], port_names[2]}));

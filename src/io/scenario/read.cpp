@@ -217,7 +217,9 @@ Result<void> read_materials(const Node &object, Scenario &out) {
       sides = {below->text("front", ""), below->text("back", "")};
     } else {
       problems.add({ErrorCode::BadInput,
-                    name + ": the name of a material or { front = ..., back = ... } was expected",
+                    fmt::format("{} is {}; the name of a material in quotes, or {{ front = ..., "
+                                "back = ... }}, was expected",
+                                name, scenario::described(value)),
                     scenario::place_of(key, value, out.file)});
       continue;
     }
@@ -310,8 +312,7 @@ Result<void> read_parts(const Node &object, Scenario &out) {
   Problems problems;
   for (const toml::node &item : *list) {
     if (!item.is_table())
-      return fail(ErrorCode::BadInput, "part: a table [[object.part]] was expected",
-                  object.where("part"));
+      return scenario::no_table("part", item, "tables [[object.part]]", object.where("part"));
     const Node node(*item.as_table(), "object.part", "object.part", out.file);
     if (!problems.went(node.check()))
       continue;
@@ -364,8 +365,7 @@ Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out
   Problems problems;
   for (const toml::node &item : *list) {
     if (!item.is_table())
-      return fail(ErrorCode::BadInput, "object: a table [[object]] was expected",
-                  top.where("object"));
+      return scenario::no_table("object", item, "tables [[object]]", top.where("object"));
     problems.went(read_object(Node(*item.as_table(), "object", "object", out.file), folder, out));
   }
   return problems.told();

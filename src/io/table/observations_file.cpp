@@ -121,7 +121,8 @@ Result<ObservationColumns> ObservationReader::columns() const {
         table_, file_,
         fmt::format("no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a Julian "
                     "date in UTC less 2400000.5) was expected in the line of names; there "
-                    "are {}. Name yours so",
+                    "are {}. Name yours so when it holds that: take 2400000.5 off Julian dates, "
+                    "and 69.184 s (since 2017) off TT",
                     printable(found)));
   if (c.flux < 0 && c.mag < 0 && (c.q < 0 || c.u < 0))
     return fail(ErrorCode::BadInput,

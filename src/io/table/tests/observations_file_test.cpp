@@ -86,7 +86,8 @@ TEST(Observations, EveryFaultHasItsPlace) {
                 "obs.csv:1: no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a "
                 "Julian "
                 "date in UTC less 2400000.5) was expected in the line of names; there are JD, mag. "
-                "Name yours so"},
+                "Name yours so when it holds that: take 2400000.5 off Julian dates, and 69.184 s "
+                "(since 2017) off TT"},
            Case{"time_utc,band\n" + t + ",V\n", "obs.csv:1: nothing measured"},
            Case{"time_utc,q\n" + t + ",1\n", "obs.csv:1: nothing measured"},
            Case{"time_utc,I,q\n" + t + ",1,0.1\n", "obs.csv:1: q and u go together"},
