@@ -94,12 +94,14 @@ Result<void> check_metadata(const Fields &fields, Metadata metadata) {
     const char *hint;
   };
   const Rule rules[] = {
-      {"CENTER_NAME", {"EARTH"}, "SGP4 is of the Earth."},
-      {"REF_FRAME", {"TEME"}, "SGP4's elements are of the true equator and mean equinox."},
+      {"CENTER_NAME", {"EARTH"}, "SGP4 is of the Earth. Fetch a set of SGP4."},
+      {"REF_FRAME",
+       {"TEME"},
+       "SGP4's elements are of the true equator and mean equinox. Fetch a set of SGP4."},
       {"TIME_SYSTEM", {"UTC"}, "Give the epoch in UTC."},
       {"MEAN_ELEMENT_THEORY",
        {"SGP4", "SGP/SGP4", "SGP"},
-       "Elements of another theory would be propagated wrongly."},
+       "Elements of another theory would be propagated wrongly. Fetch a set of SGP4."},
   };
   for (const Rule &rule : rules) {
     if (fields.find(rule.key) == nullptr && metadata == Metadata::Optional)

@@ -48,8 +48,15 @@ Result<Site> site_from(const std::string &text) {
   if (const auto cells = csv_cells(text); cells && (cells->size() == 3 || cells->size() == 2)) {
     const auto lat = parse_number((*cells)[0].text), lon = parse_number((*cells)[1].text);
     const auto alt = cells->size() == 3 ? parse_number((*cells)[2].text) : std::optional(0.0);
-    if (lat && lon && alt)
-      return make_site("", *lat, *lon, *alt);
+    if (lat && lon && alt) {
+      auto site = make_site("", *lat, *lon, *alt);
+      if (!site)
+        return fail(
+            site.error().code,
+            fmt::format("site \"{}\": {}. It is latitude, longitude [deg] and altitude [m].", text,
+                        site.error().message));
+      return site;
+    }
   }
   for (Site &site : known_sites())
     if (plain(site.name) == plain(text))
