@@ -47,7 +47,7 @@ def test_no_room_at_any_byte(place, job):
     before = place.names()
     size = max(map(len, good.values())) if isinstance(good, dict) else len(good)
     steps = times(8, 100)
-    for limit in sorted({0, 1, 100, *(size * k // steps for k in range(1, steps + 1))}):
+    for limit in sorted({0, 1, 100, max(0, size - 5000), max(0, size - 2000), size - 1, *(size * k // steps for k in range(1, steps + 1))}):
         done = place.umov(*arguments, preexec_fn=limited(FSIZE=limit))
         assert_clean_end(done, {0, 6})
         assert done.code == 6 or limit >= size

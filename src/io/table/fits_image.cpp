@@ -1,5 +1,8 @@
 #include <umov/io/fits_image.h>
 
+#include "io/table/fits_written.h"
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fitsio.h>
@@ -44,6 +47,28 @@ void write_card(fitsfile *file, const FitsCard &card, int &status) {
   }
 }
 
+/// Whether the pixels of a file are those of the image.
+bool holds(const std::filesystem::path &path, const FitsImage &image) {
+  int status = 0, none = 0;
+  fitsfile *file = nullptr;
+  fits_open_diskfile(&file, path.c_str(), READONLY, &status);
+  LONGLONG first = 1;
+  bool is_same = status == 0;
+  std::vector<std::int32_t> found;
+  for (const auto plane : image.planes) {
+    const auto count = static_cast<LONGLONG>(plane.size());
+    found.resize(plane.size());
+    fits_read_img(file, TINT, first, count, nullptr, found.data(), &none, &status);
+    is_same = is_same && status == 0 && std::ranges::equal(found, plane);
+    first += count;
+  }
+  int closed = 0;
+  if (file != nullptr)
+    fits_close_file(file, &closed);
+  fits_clear_errmsg();
+  return is_same;
+}
+
 } // namespace
 
 Result<void> write_fits_image(const std::filesystem::path &path, const FitsImage &image) {
@@ -65,9 +90,15 @@ Result<void> write_fits_image(const std::filesystem::path &path, const FitsImage
     fits_write_img(file, TINT, first, count, const_cast<std::int32_t *>(plane.data()), &status);
     first += count;
   }
-  int closed = status;
-  fits_close_file(file, &closed);
-  return check(status != 0 ? status : closed, path, 0);
+  FitsWritten written;
+  written.close(file, status);
+  UMOV_TRY(check(status, path, 0));
+  if (!written.stands_in(path) || !holds(path, image))
+    return fail(ErrorCode::Device,
+                fmt::format("cannot be written: {} Choose another folder or free some space.",
+                            fits_is_incomplete),
+                {path.string()});
+  return {};
 }
 
 } // namespace umov

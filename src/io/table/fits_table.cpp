@@ -1,4 +1,5 @@
 #include "io/table/fits_table.h"
+#include "io/table/fits_written.h"
 #include "io/table/light_curve_names.h"
 
 #include <algorithm>
@@ -74,11 +75,13 @@ Result<void> FitsTable::check(int status, const char *action) const {
               {path_.string()});
 }
 
+FitsTable::FitsTable() = default;
 FitsTable::Memory::~Memory() { std::free(bytes); }
 
 Result<FitsTable> FitsTable::create(const std::filesystem::path &path, const Table &columns) {
   FitsTable out;
   out.path_ = path;
+  out.written_ = std::make_unique<FitsWritten>();
   int status = 0;
   fitsfile *file = nullptr;
   errno = 0;
@@ -145,6 +148,7 @@ FitsTable::FitsTable(FitsTable &&other) noexcept { *this = std::move(other); }
 FitsTable &FitsTable::operator=(FitsTable &&other) noexcept {
   std::swap(file_, other.file_);
   std::swap(memory_, other.memory_);
+  std::swap(written_, other.written_);
   path_ = std::move(other.path_);
   widths_ = std::move(other.widths_);
   row_bytes_ = other.row_bytes_;
@@ -189,6 +193,8 @@ Result<void> FitsTable::append(std::size_t rows, const std::string &bytes) {
   auto *data = reinterpret_cast<unsigned char *>(const_cast<char *>(bytes.data()));
   fits_write_tblbytes(as_fits(file_), rows_ + 1, 1, static_cast<LONGLONG>(bytes.size()), data,
                       &status);
+  if (written_)
+    written_->add(bytes);
   rows_ += static_cast<long long>(rows);
   return check(status, "write rows");
 }
@@ -201,8 +207,19 @@ Result<void> FitsTable::note(const std::string &text) {
 
 Result<void> FitsTable::close() {
   int status = 0;
-  fits_close_file(as_fits(std::exchange(file_, nullptr)), &status);
-  return check(status, "finish the file");
+  fitsfile *file = as_fits(std::exchange(file_, nullptr));
+  if (!written_) {
+    fits_close_file(file, &status);
+    return check(status, "finish the file");
+  }
+  written_->close(file, status);
+  UMOV_TRY(check(status, "finish the file"));
+  if (!written_->stands_in(path_))
+    return fail(ErrorCode::Device,
+                fmt::format("cannot finish the file: {} Choose another folder or free some space.",
+                            fits_is_incomplete),
+                {path_.string()});
+  return {};
 }
 
 Result<std::string> FitsTable::take() {

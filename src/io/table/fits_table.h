@@ -6,6 +6,7 @@
 #include <umov/io/table.h>
 
 namespace umov {
+class FitsWritten;
 
 /// Makes the file and its header at once; rows come as bytes, in order.
 class FitsTable {
@@ -24,6 +25,7 @@ public:
                       std::string &out) const;
   Result<void> append(std::size_t rows, const std::string &bytes);
   Result<void> note(const std::string &text);
+  /// Device if the file does not hold what was written.
   Result<void> close();
   /// Finishes what was made in memory.
   Result<std::string> take();
@@ -35,11 +37,12 @@ private:
     std::size_t size = 0;
     ~Memory();
   };
-  FitsTable() = default;
+  FitsTable();
   Result<void> begin(const Table &columns, int status);
   Result<void> check(int status, const char *action) const;
-  void *file_ = nullptr;           ///< fitsfile
-  std::unique_ptr<Memory> memory_; ///< CFITSIO keeps its address
+  void *file_ = nullptr;                 ///< fitsfile
+  std::unique_ptr<Memory> memory_;       ///< CFITSIO keeps its address
+  std::unique_ptr<FitsWritten> written_; ///< of a file
   std::filesystem::path path_;
   std::vector<std::size_t> widths_; ///< bytes per column
   std::size_t row_bytes_ = 0;
