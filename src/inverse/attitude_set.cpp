@@ -1,5 +1,7 @@
 #include "inverse/attitude_set.h"
 
+#include "inverse/chords.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,21 +11,36 @@
 #include <utility>
 
 namespace umov::inverse {
+namespace {
+
+constexpr double same_attitude = 1e-7; // rad
+
+Chords chords_of(const std::vector<PoseSample> &draws) {
+  Chords out;
+  for (const PoseSample &s : draws)
+    out.add(s.turning.attitude);
+  return out;
+}
+
+} // namespace
 
 std::vector<double> neighbour_distances(const std::vector<PoseSample> &draws, std::size_t rank,
                                         unsigned threads) {
+  const Chords all = chords_of(draws);
+  const double same = chord_square(same_attitude);
   std::vector<double> out(draws.size(), pi);
   parallel_for(draws.size(), threads, [&](std::size_t k) {
-    std::vector<double> all;
-    for (const PoseSample &other : draws)
-      if (const double d = angle_between(draws[k].turning.attitude, other.turning.attitude);
-          d > 1e-7)
-        all.push_back(d);
-    if (all.size() < rank)
-      return;
-    const auto at = all.begin() + static_cast<std::ptrdiff_t>(rank - 1);
-    std::nth_element(all.begin(), at, all.end());
-    out[k] = *at;
+    std::vector<double> squares;
+    all.squares_from(all.at(k), squares);
+    std::vector<double> nearest(std::max<std::size_t>(rank, 1), 1e300); // rising
+    for (const double square : squares)
+      if (square < nearest.back() && square > same) {
+        nearest.back() = square;
+        for (std::size_t j = nearest.size() - 1; j > 0 && nearest[j] < nearest[j - 1]; --j)
+          std::swap(nearest[j], nearest[j - 1]);
+      }
+    if (nearest.back() < 1e300)
+      out[k] = angle_of_chord_square(nearest.back());
   });
   return out;
 }
@@ -45,18 +62,16 @@ double width_at(Quaternion attitude, std::span<const PoseMode> modes) {
 }
 
 /// How many balls must grow by for one of another run to reach a sample, at most.
-double growth_to(const PoseSample &sample, std::size_t run, const std::vector<AttitudeBall> &set,
-                 const std::vector<std::size_t> &run_of) {
+double growth_to(const PoseSample &sample, std::size_t run, const Chords &places,
+                 const std::vector<AttitudeBall> &set, const std::vector<std::size_t> &run_of) {
+  std::vector<double> squares;
+  places.squares_from(sample.turning.attitude, squares);
   double least = most_growth;
-  const Quaternion q = sample.turning.attitude;
   for (std::size_t j = 0; j < set.size(); ++j) {
-    if (run_of[j] == run)
-      continue;
-    const Quaternion p = set[j].attitude;
-    const double half_cos = std::abs(q.w * p.w + q.x * p.x + q.y * p.y + q.z * p.z);
-    // Most are too far to be asked how far.
-    if (half_cos > std::cos(std::min(least * set[j].radius_rad, pi) / 2))
-      least = std::min(least, angle_between(q, p) / set[j].radius_rad);
+    // An angle is twice its chord or more: most are too far to be asked how far.
+    const double reach = least * set[j].radius_rad / 2;
+    if (squares[j] < reach * reach && run_of[j] != run)
+      least = std::min(least, angle_of_chord_square(squares[j]) / set[j].radius_rad);
   }
   return least;
 }
@@ -65,8 +80,12 @@ double growth_to(const PoseSample &sample, std::size_t run, const std::vector<At
 double growth_of(const std::vector<PoseSample> &samples, const std::vector<AttitudeBall> &set,
                  const std::vector<std::size_t> &run_of, std::span<const std::size_t> runs) {
   std::vector<std::pair<double, double>> all(samples.size()); // growth, weight
+  Chords places;
+  for (const AttitudeBall &ball : set)
+    places.add(ball.attitude);
   parallel_for(samples.size(), 0, [&](std::size_t k) {
-    all[k] = {growth_to(samples[k], runs.empty() ? k : runs[k], set, run_of), samples[k].weight};
+    all[k] = {growth_to(samples[k], runs.empty() ? k : runs[k], places, set, run_of),
+              samples[k].weight};
   });
   std::ranges::stable_sort(all, {}, &std::pair<double, double>::first);
   double held = 0;
@@ -114,15 +133,23 @@ AttitudeSet highest_density(const std::vector<PoseSample> &samples, std::span<co
 }
 
 double share_of(std::span<const AttitudeBall> set) {
-  double out = 0;
+  Chords places;
+  std::vector<double> reach;
   for (const AttitudeBall &ball : set) {
-    // Each place counts once: a ball's volume over the number of balls that hold its centre.
-    double holders = 0;
-    for (const AttitudeBall &other : set)
-      holders += angle_between(ball.attitude, other.attitude) <= other.radius_rad ? 1 : 0;
-    out += share_within(ball.radius_rad) / std::max(holders, 1.0);
+    places.add(ball.attitude);
+    reach.push_back(chord_square(std::min(ball.radius_rad, pi)));
   }
-  return std::min(out, 1.0);
+  std::vector<double> parts(set.size());
+  parallel_for(set.size(), 0, [&](std::size_t k) {
+    // Each place counts once: a ball's volume over the number of balls that hold its centre.
+    std::vector<double> squares;
+    places.squares_from(set[k].attitude, squares);
+    double holders = 0;
+    for (std::size_t j = 0; j < set.size(); ++j)
+      holders += squares[j] <= reach[j] ? 1 : 0;
+    parts[k] = share_within(set[k].radius_rad) / std::max(holders, 1.0);
+  });
+  return std::min(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);
 }
 
 } // namespace umov::inverse

@@ -498,7 +498,12 @@ Result<PoseAnswer> refine_spin(const CurveModel &model, const CurveModel &first,
 
 bool is_in(std::span<const AttitudeBall> set, Quaternion attitude) {
   return std::ranges::any_of(set, [&](const AttitudeBall &ball) {
-    return angle_between(ball.attitude, attitude) <= ball.radius_rad;
+    const Quaternion q = ball.attitude;
+    const double cos_half =
+        std::abs(q.w * attitude.w + q.x * attitude.x + q.y * attitude.y + q.z * attitude.z);
+    // 1 - x^2/2 is a cosine or less: most are too far to be asked how far.
+    return 1 - cos_half < ball.radius_rad * ball.radius_rad / 8 + 1e-9 &&
+           angle_between(q, attitude) <= ball.radius_rad;
   });
 }
 
