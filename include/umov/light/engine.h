@@ -31,7 +31,9 @@ struct MaskQuality {
   double refine_above = 0;
 };
 /// Typical error of I 0.2-0.5 %, a few seconds and tens of megabytes.
-inline constexpr MaskQuality fast_masks{62'000, 70, 70, 0.025};
+inline constexpr MaskQuality fast_masks{60'000, 64, 64, 0.03};
+/// For tables of many poses, where finer masks gain more than rays do (docs/theory/engine.md).
+inline constexpr MaskQuality table_masks{62'000, 70, 70, 0.03};
 /// Typical error of I 0.1 %, up to half a minute and 300 MB.
 inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
 

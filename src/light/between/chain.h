@@ -45,5 +45,10 @@ struct ChainList {
 };
 
 inline Vec3<Body> vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+inline void put_floats(Vec3<Body> from, float (&to)[3]) {
+  to[0] = static_cast<float>(from.x);
+  to[1] = static_cast<float>(from.y);
+  to[2] = static_cast<float>(from.z);
+}
 
 } // namespace umov

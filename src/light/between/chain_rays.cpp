@@ -108,13 +108,8 @@ bool ChainRays::step(Walk &walk, Vertex &at, Vec3<Body> &back,
   if (!(dot(at.normal, d.to) > 0) || !(dot(at.normal, back) > 0))
     return false;
   ChainVertex &kept = walk.between.emplace_back();
-  const auto put = [](Vec3<Body> from, float(&into)[3]) {
-    into[0] = static_cast<float>(from.x);
-    into[1] = static_cast<float>(from.y);
-    into[2] = static_cast<float>(from.z);
-  };
-  put(at.normal, kept.normal);
-  put(d.to, kept.to);
+  put_floats(at.normal, kept.normal);
+  put_floats(d.to, kept.to);
   kept.density = static_cast<float>(d.density);
   kept.triangle = at.triangle;
   kept.slot = at.slot;

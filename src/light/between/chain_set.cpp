@@ -18,14 +18,9 @@ Occluder::Point point_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 backend::ChainPose chain_pose(const Pose &pose) {
   backend::ChainPose out;
-  const auto put = [](Vec3<Body> from, float(&to)[3]) {
-    to[0] = static_cast<float>(from.x);
-    to[1] = static_cast<float>(from.y);
-    to[2] = static_cast<float>(from.z);
-  };
-  put(pose.sun, out.sun);
-  put(pose.observer, out.observer);
-  put(plane_normal(pose.observer, pose.sun), out.plane);
+  put_floats(pose.sun, out.sun);
+  put_floats(pose.observer, out.observer);
+  put_floats(plane_normal(pose.observer, pose.sun), out.plane);
   out.at_sun = look_around(chain_mask_cells, pose.sun);
   out.at_observer = look_around(chain_mask_cells, pose.observer);
   return out;

@@ -52,7 +52,9 @@ Result<void> MasksLight::prepare(const std::atomic<bool> *cancel, ChainSharing c
   EngineOptions with;
   with.threads = options_.threads;
   // What masks lack, rays add: finer masks cost more to make than they save.
-  with.masks = is_auto ? fast_masks : masks_for(options_.accuracy);
+  with.masks = !is_auto                     ? masks_for(options_.accuracy)
+               : options_.is_for_many_poses ? table_masks
+                                            : fast_masks;
   if (is_auto) { // the allowance for curved elements comes on top of what sampling leaves
     const double most = options_.is_for_many_poses ? 0.95 : 0.9;
     const double left = std::clamp(0.95 - curved_error_ / options_.accuracy, 0.4, most);
