@@ -49,15 +49,18 @@ std::vector<Probe> probes() {
   return out;
 }
 
+double mean_albedo(const Surface &surface, std::size_t bands, Vec3<Facet> from) {
+  double mean = 0;
+  for (std::size_t b = 0; b < bands; ++b)
+    mean += surface.albedo(b, from) / static_cast<double>(bands);
+  return mean;
+}
+
 /// How many times as much as the other in the mean of its bands, of the light from a direction; no
 /// less than 1. What is as much brighter everywhere has as much fewer chains, and half-widths know.
-double times_as_much(const Surface &surface, std::size_t band, const Surface &old,
-                     std::size_t old_bands, Vec3<Facet> from) {
+double times_as_much(double albedo, double old_mean) {
   constexpr double most = 32;
-  double mean = 0;
-  for (std::size_t b = 0; b < old_bands; ++b)
-    mean += old.albedo(b, from) / static_cast<double>(old_bands);
-  return mean > 0 ? std::clamp(surface.albedo(band, from) / mean, 1.0, most) : 1;
+  return old_mean > 0 ? std::clamp(albedo / old_mean, 1.0, most) : 1;
 }
 
 /// Nowhere, and in no band, a few times as much as the other in the mean of its bands beyond that:
@@ -71,9 +74,11 @@ bool is_within(const Surface &surface, const Surface &old, std::size_t bands,
     return false;
   const Vec3<Body> normal{0, 0, 1}, field{1, 0, 0};
   for (const auto &[from, all_to] : probes()) {
+    const Vec3<Facet> on_facet{from.x, from.y, from.z};
+    const double old_mean = mean_albedo(old, old_bands, on_facet);
     std::vector<double> allowed;
     for (std::size_t b = 0; b < bands; ++b)
-      allowed.push_back(most * times_as_much(surface, b, old, old_bands, {from.x, from.y, from.z}));
+      allowed.push_back(most * times_as_much(surface.albedo(b, on_facet), old_mean));
     double mirrored = 0;
     for (std::size_t b = 0; b < old_bands; ++b)
       mirrored += old.mirror_part(b, from.z) * old.reflection(b, from.z).a;
