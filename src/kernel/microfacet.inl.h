@@ -56,11 +56,12 @@ template <class R> UMOV_KERNEL R beckmann_beyond(R cos_theta, R alpha) {
   const R c = max(cos_theta, R(1e-9));
   const R z = R(1) / (alpha * c);
   const R tail = exp(-(R(1) - c) * (R(1) + c) / (c * c * alpha * alpha));
-  // exp(z^2) erfc(z) by its continued fraction for large z (Abramowitz & Stegun 7.1.14).
+  // exp(z^2) erfc(z) by its continued fraction for large z (Abramowitz & Stegun 7.1.14): 14 terms
+  // err by 1e-15 at 5, less beyond.
   const R root_pi = R(1.7724538509055160);
   const R small = min(z, R(5)), large = max(z, R(5));
   R fraction = R(0);
-  for (int k = 24; k >= 1; --k)
+  for (int k = 14; k >= 1; --k)
     fraction = R(k) / R(2) / (large + fraction);
   const R scaled =
       select(z < R(5), exp(small * small) * erfc(small), R(1) / (root_pi * (large + fraction)));

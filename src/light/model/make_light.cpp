@@ -27,36 +27,6 @@ std::vector<Pose> typical_poses(std::size_t count) {
   return poses;
 }
 
-/// Of a grid with the heaviest wavelength first and the others in order: that and both ends.
-std::vector<std::size_t> few_nodes(std::size_t count) {
-  std::vector<std::size_t> out{0, 1, count - 1};
-  out.resize(std::min<std::size_t>(count, 3));
-  return out;
-}
-
-/// The scene at some nodes of its grid: what compiles at all of them compiles at a few, if each
-/// still says which curve asks for it.
-Scene at_nodes(const Scene &scene, const std::vector<std::size_t> &which) {
-  Scene out = scene;
-  out.bands.clear();
-  std::vector<Band> nodes;
-  for (const std::size_t node : which) {
-    nodes.push_back(scene.grid.nodes()[node]);
-    out.bands.push_back({nodes.back().name, nodes.back().wavelength});
-  }
-  out.grid = BandGrid::make(out.bands).value();
-  std::vector<std::pair<Surface, Surface>> known; // as it was, as it is now
-  for (auto *side : {&out.front, &out.back})
-    for (Surface &surface : *side) {
-      auto same = std::find_if(known.begin(), known.end(),
-                               [&](const auto &pair) { return pair.first.is_same(surface); });
-      if (same == known.end())
-        same = known.insert(same, {surface, Surface::compile(surface.material(), nodes).value()});
-      surface = same->second;
-    }
-  return out;
-}
-
 StokesTable lit_by(const Engine &engine, const std::vector<Pose> &poses,
                    const std::atomic<bool> *cancel) {
   StokesTable out;
@@ -67,32 +37,6 @@ StokesTable lit_by(const Engine &engine, const std::vector<Pose> &poses,
   leave_if_stopped(cancel);
   return out;
 }
-
-} // namespace
-
-double curved_error(const Scene &scene, const Engine &unhidden,
-                    const std::vector<double> &typical_i, unsigned threads,
-                    const std::atomic<bool> *cancel) {
-  constexpr double least = 1e-4;
-  if (scene.normals != NormalMode::Smooth)
-    return least;
-  const std::vector<Pose> poses = typical_poses(12);
-  const StokesTable fast = lit_by(unhidden, poses, cancel);
-  const Elements elements = make_elements(scene, visible_sides(scene.mesh, cancel), cancel);
-  const std::vector<std::size_t> nodes = few_nodes(fast.bands); // it hardly depends on them
-  const Scene few = nodes.size() < fast.bands ? at_nodes(scene, nodes) : scene;
-  std::vector<double> errors(poses.size(), 0);
-  parallel_for(poses.size(), threads, [&](std::size_t k) {
-    const LitElements lit =
-        light_elements(few, elements, geometry_of(poses[k]), {1, 0, 0, 0}, cancel);
-    for (std::size_t b = 0; b < nodes.size(); ++b)
-      errors[k] = std::max(errors[k], std::abs(fast.i[k * fast.bands + nodes[b]] - lit.total[b]) /
-                                          std::max(lit.total[b], dim_part * typical_i[nodes[b]]));
-  });
-  return std::max(*std::ranges::max_element(errors), least); // one of twelve errs as much
-}
-
-namespace {
 
 Engine unhidden_engine(const Scene &scene, const std::atomic<bool> *cancel) {
   return Engine(scene, {.visibility = Visibility::None, .threads = 1}, cancel);
@@ -219,8 +163,8 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
   if (has_rays)
     return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i, cancel,
                                        std::move(chains));
-  const double missed = curved_error(scene, *unhidden, typical_i, options.threads, cancel);
-  return MasksLight::make(scene, std::move(joints), options, std::move(typical_i), missed, cancel,
+  CurvedErrors missed = CurvedErrors::measure(scene, *unhidden, options.threads, cancel);
+  return MasksLight::make(scene, std::move(joints), options, typical_i, std::move(missed), cancel,
                           std::move(chains));
 }
 

@@ -30,16 +30,16 @@ std::string in_words(const LightFacts &facts, const MaskQuality &masks) {
 } // namespace
 
 MasksLight::MasksLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
-                       std::vector<double> typical_i, double curved_error)
-    : LightModel(of, std::move(turning)), options_(options), typical_i_(std::move(typical_i)),
-      curved_error_(curved_error), material_of_(material_of_slots(scene(), materials())) {}
+                       const std::vector<double> &typical_i, CurvedErrors curved)
+    : LightModel(of, std::move(turning)), options_(options), floor_i_(floor_of(options, typical_i)),
+      curved_(std::move(curved)), material_of_(material_of_slots(scene(), materials())) {}
 
 Result<std::unique_ptr<LightModel>>
 MasksLight::make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-                 std::vector<double> typical_i, double curved_error,
+                 const std::vector<double> &typical_i, CurvedErrors curved,
                  const std::atomic<bool> *cancel, ChainSharing chains) {
   std::unique_ptr<MasksLight> out(
-      new MasksLight(scene, std::move(joints), options, std::move(typical_i), curved_error));
+      new MasksLight(scene, std::move(joints), options, typical_i, std::move(curved)));
   UMOV_TRY(out->prepare(cancel, std::move(chains)));
   return out;
 }
@@ -47,7 +47,6 @@ MasksLight::make(const Scene &scene, std::vector<Joint> joints, const LightOptio
 Result<void> MasksLight::prepare(const std::atomic<bool> *cancel, ChainSharing chains) {
   const auto start = std::chrono::steady_clock::now();
   const bool is_auto = options_.method == LightMethod::Auto;
-  floor_i_ = floor_of(options_, typical_i_);
   facts_.floor_i = of_bands(floor_i_);
   EngineOptions with;
   with.threads = options_.threads;
@@ -57,7 +56,7 @@ Result<void> MasksLight::prepare(const std::atomic<bool> *cancel, ChainSharing c
                                             : fast_masks;
   if (is_auto) { // the allowance for curved elements comes on top of what sampling leaves
     const double most = options_.is_for_many_poses ? 0.95 : 0.9;
-    const double left = std::clamp(0.95 - curved_error_ / options_.accuracy, 0.4, most);
+    const double left = std::clamp(0.95 - curved_.typical() / options_.accuracy, 0.4, most);
     with.masks.refine_above = left * options_.accuracy;
   }
   with.doubts_all = is_auto && !options_.is_for_many_poses;
@@ -139,17 +138,6 @@ std::size_t MasksLight::mask_bytes() const {
   return engine_ ? engine_->mask_bytes() : turning_->mask_bytes();
 }
 
-/// What light by the middle of curved elements may miss.
-void MasksLight::add_allowance(StokesTable &table) const {
-  for (std::size_t at = 0; at < table.i.size(); ++at) {
-    const double more =
-        curved_error_ * std::max(table.i[at], dim_part * typical_i_[at % table.bands]);
-    table.i_err[at] += more;
-    for (std::vector<double> *error : {&table.q_err, &table.u_err})
-      (*error)[at] += more;
-  }
-}
-
 /// Poses that miss the accuracy for all that was mended. By rays one of them costs as much as a
 /// thousand others are looked up in: of many poses those are left that miss it by less than half.
 std::vector<std::size_t> MasksLight::inaccurate(const StokesTable &table) const {
@@ -174,7 +162,7 @@ bool MasksLight::light(std::span<const Pose> poses, std::span<const double> angl
                                : turning_->evaluate(poses, angles_rad, out, task, material_of_);
   if (!is_done)
     return false;
-  add_allowance(out);
+  curved_.add_to(out, poses);
   if (direct_) {
     const std::vector<std::size_t> left = inaccurate(out);
     if (!left.empty() && !direct_->light(poses, angles_rad, left, out, task))

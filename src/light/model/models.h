@@ -1,6 +1,7 @@
 #pragma once
 // Private: the models that make_light chooses from.
 
+#include "light/model/curved_errors.h"
 #include "light/model/ray_tracer.h"
 
 #include <umov/light/articulated_engine.h>
@@ -10,18 +11,6 @@ namespace umov {
 
 /// What the accuracy at each node refers to at least, from the typical light; empty: 0.
 std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i);
-
-/// Light below this part of the typical one counts as that much in what `curved_error` refers to:
-/// the error falls with I (HST, Agena: 0.02 to 0.2 % of it down to there).
-inline constexpr double dim_part = 0.1;
-/// What the engine errs by lighting curved elements by their middle: the second largest of 24
-/// random poses (95 %) of its difference from the reference, nothing hidden, in parts of I (of dim
-/// light: see `dim_part`); at least 1e-4, which is all where every facet is flat. `unhidden` is the
-/// scene's engine without visibility. Throws Failure (Interrupted) once `cancel`, which may be
-/// null, became true.
-double curved_error(const Scene &scene, const Engine &unhidden,
-                    const std::vector<double> &typical_i, unsigned threads,
-                    const std::atomic<bool> *cancel = nullptr);
 
 /// Each pose by rays, with light between surfaces where it is asked for.
 class RaysLight final : public LightModel {
@@ -45,7 +34,7 @@ class MasksLight final : public LightModel {
 public:
   static Result<std::unique_ptr<LightModel>>
   make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-       std::vector<double> typical_i, double curved_error, const std::atomic<bool> *cancel,
+       const std::vector<double> &typical_i, CurvedErrors curved, const std::atomic<bool> *cancel,
        ChainSharing chains = {});
   [[nodiscard]] std::shared_ptr<const Integrator>
   chain_drawer(const std::atomic<bool> *cancel) const override {
@@ -62,18 +51,16 @@ public:
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-             std::vector<double> typical_i, double curved_error);
+             const std::vector<double> &typical_i, CurvedErrors curved);
   Result<void> prepare(const std::atomic<bool> *cancel, ChainSharing chains);
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
   Result<void> take_device();
-  void add_allowance(StokesTable &table) const;
   [[nodiscard]] std::vector<std::size_t> inaccurate(const StokesTable &table) const;
 
   LightOptions options_;
-  std::vector<double> typical_i_; ///< per node
-  std::vector<double> floor_i_;   ///< what the accuracy refers to at least, per node
-  double curved_error_;           ///< of I, in parts of it
+  std::vector<double> floor_i_; ///< what the accuracy refers to at least, per node
+  CurvedErrors curved_;
   std::vector<std::uint32_t> material_of_;
   std::optional<Engine> engine_;             ///< of a body whose parts do not turn
   std::optional<ArticulatedEngine> turning_; ///< of one whose parts do
