@@ -48,6 +48,8 @@ void add_bench(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--geometries", o->light.geometries, "Poses compared with rays; 0: none")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();
+  verb->add_option("--seed", o->light.seed, "Of the poses that are compared with rays")
+      ->capture_default_str();
   verb->add_option("--seconds", o->light.seconds, "Time spent on each rate")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();

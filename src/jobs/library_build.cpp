@@ -27,7 +27,8 @@ struct Making {
   double error = 0;
   std::vector<float> sums;
   const char *state = "made";
-  std::string device; ///< as LightModel::device; who lit it in the end is in `text`
+  std::string no_sums; ///< why a material has light alone; empty: it does not
+  std::string device;  ///< as LightModel::device; who lit it in the end is in `text`
 };
 
 /// Light by sums before any colour: for objects without parts that turn, in single wavelengths.
@@ -87,16 +88,21 @@ constexpr std::size_t block = 1u << 14; // poses whose sums are held at a time
 bool SummedLight::make(std::size_t cells, const Monitor &monitor, Making &out,
                        StokesTable &light) const {
   const auto tables = sums_->tables_for(scene_);
-  if (!tables)
+  if (!tables) {
+    out.no_sums = tables.error().message;
     return false;
+  }
   const std::size_t pairs = signature_pairs(cells);
   AbundanceTable sums;
   StokesTable part;
   for (std::size_t begin = 0; begin < pairs && !monitor.is_cancelled(); begin += block) {
     const std::size_t end = std::min(begin + block, pairs);
     const auto poses = signature_poses(cells, begin, end, out.text.sun_radius_rad);
-    if (!sums_->evaluate(poses, sums, options_.threads, monitor.cancel))
+    if (const auto added = sums_->evaluate(poses, sums, options_.threads, monitor.cancel); !added) {
+      if (!monitor.is_cancelled())
+        out.no_sums = added.error().message;
       return false;
+    }
     tables->apply(sums, part, options_.threads, monitor.cancel);
     append(part, light);
     for (const double sum : sums.sum)
@@ -232,7 +238,7 @@ private:
   Result<bool> colour(const SummedLight &sums, const PoseLight &own, const JobBy &job_by,
                       const fs::path &file, Making &out, StokesTable &light) const;
   [[nodiscard]] Result<bool> may_stay(const std::string &device) const;
-  void tell_of_error(const Making &made) const;
+  void tell_of_quality(const Making &made) const;
   void tell(const Making &made);
 
   const LibraryRequest &request_;
@@ -272,7 +278,7 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
   UMOV_ASSIGN(made, light(scenario, own, name, job_by, file));
   UMOV_ASSIGN(bytes, signature_bytes(made.text, request_.cells, made.light, made.error, made.sums));
   UMOV_TRY(write_file_atomically(file, bytes));
-  tell_of_error(made);
+  tell_of_quality(made);
   (void)own.model().keep_masks(); // a cache that cannot be written costs time alone
   const std::string own_device = own.model().device();
   const std::string &device = made.device.starts_with("cpu") ? made.device : own_device;
@@ -369,7 +375,11 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
 /// Beyond this part of I a signature says nothing of the light between its nodes.
 constexpr double useless_error = 1;
 
-void SignatureMaker::tell_of_error(const Making &made) const {
+void SignatureMaker::tell_of_quality(const Making &made) const {
+  if (!made.no_sums.empty())
+    diagnostics_.warn(fmt::format("{}: {}: the file holds light without abundances, and other "
+                                  "materials need it to be made anew",
+                                  printable(made.text.name), made.no_sums));
   if (made.error <= useless_error)
     return;
   diagnostics_.warn(fmt::format(

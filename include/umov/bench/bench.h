@@ -24,6 +24,7 @@ struct LightRequest {
   std::vector<std::string> meshes; ///< OBJ files (m, +Z up) instead of the standard cases
   std::string only;                ///< cases with this in their name
   std::size_t geometries = 200;    ///< poses compared with rays; 0: none
+  std::uint64_t seed = 3;          ///< of the poses that are compared
   double seconds = 2;              ///< spent on each rate
   /// Cuda, and Auto where there are cards: these beside one core and all cores, in cases of their
   /// own.

@@ -147,9 +147,8 @@ double CurvedErrors::Node::at(std::size_t band, double i) const {
 double CurvedErrors::at(double phase_rad, std::size_t band, double i) const {
   if (nodes_.empty())
     return least * i;
-  const auto above = std::find_if(nodes_.begin(), nodes_.end(), [&](const Node &node) {
-    return node.phase_rad > phase_rad;
-  });
+  const auto above = std::find_if(nodes_.begin(), nodes_.end(),
+                                  [&](const Node &node) { return node.phase_rad > phase_rad; });
   if (above == nodes_.begin())
     return above->at(band, i);
   const Node &below = *(above - 1);

@@ -76,7 +76,8 @@ TEST(HighPhases, ATubeIsWithinItsHalfWidthsAtEachPhaseAngle) {
     const StokesTable fast = lit(tube, poses, {.method = LightMethod::Masks});
     EXPECT_GE(covered(fast, known, 0, poses.size()), 0.88) << alpha;
     for (std::size_t p = 0; p < std::size(phases_deg); ++p)
-      EXPECT_GE(covered(fast, known, p * per_phase, per_phase), 0.7) << alpha << " " << phases_deg[p];
+      EXPECT_GE(covered(fast, known, p * per_phase, per_phase), 0.7)
+          << alpha << " " << phases_deg[p];
   }
 }
 
