@@ -75,7 +75,8 @@ def main():
                 continue
             small = 1 if "passes" in name else 10_000  # nights, poses
             trial = lock(pathlib.Path(place, f"trial of {name}"), job(small))
-            count = max(1, round(small * 2 * given.seconds / (trial["predicted"]["cpu_s"] * trial["total"])))  # two processes
+            count = round(small * 2 * given.seconds / (trial["predicted"]["cpu_s"] * trial["total"]))  # two processes
+            count = min(max(count, 1), 10_000_000)  # poses that umov signature takes at most
             ways = {"terminal": lambda folder: [UMOV, "scale", "run", "--workers", 2, "--threads", 1, folder]}
             if not given.no_dask:
                 ways["Dask"] = lambda folder: [sys.executable, "-m", "umov.scale", "run", folder, "--cluster", "local:2"]
