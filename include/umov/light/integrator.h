@@ -63,13 +63,17 @@ class Integrator;
 
 /// What chains (BetweenMethod::Chains) have to do with those of other materials on the same mesh.
 struct ChainSharing {
-  /// They are drawn for the light of these scenes, too, so that integrators of them may take them.
+  /// They are drawn for the light of these scenes, too, so that integrators of them take them. A
+  /// scene on another mesh is passed over; one without a mesh is on the same.
   std::vector<Scene> also = {};
-  /// Whose chains are taken, without any new rays: where it drew them for this scene, or this one's
-  /// surfaces scatter much like those that they were drawn for, as with other n, k or reflectance.
+  /// Whose chains are taken, without any new rays: where it drew them for this scene, or tell this
+  /// one's light as far as can be seen (docs/theory/bounces.md), as with other n, k or reflectance.
   /// Else there are own ones. Null: own ones.
   std::shared_ptr<const Integrator> elder = nullptr;
 };
+
+/// The same for integrators of a scene, without the meshes of others, which need not be held.
+ChainSharing without_meshes(ChainSharing sharing, const Scene &scene);
 
 /// Compiled scene. `evaluate` is pure and thread safe: the same poses give the same bits whatever
 /// the number of threads and whatever was computed before.
@@ -113,8 +117,10 @@ public:
   indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
                     const IntegrationOptions &options, std::size_t paths, std::uint64_t first,
                     const std::atomic<bool> *cancel = nullptr) const;
-  /// Chains of so many bounces and this seed are the elder's (ChainSharing).
-  [[nodiscard]] bool takes_chains(std::size_t bounces, std::uint64_t seed) const;
+  /// Chains of so many bounces and this seed are the elder's (ChainSharing). Throws Failure
+  /// (Interrupted) once `cancel`, which may be null, became true.
+  [[nodiscard]] bool takes_chains(std::size_t bounces, std::uint64_t seed,
+                                  const std::atomic<bool> *cancel = nullptr) const;
   /// Nothing of the body can hide anything else of it.
   [[nodiscard]] bool is_convex() const;
 

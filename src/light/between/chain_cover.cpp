@@ -14,16 +14,6 @@ std::uint32_t slots_of(const Scene &scene) {
   return static_cast<std::uint32_t>(scene.front.size() + scene.back.size());
 }
 
-Scene without_mesh(const Scene &of) {
-  Scene out;
-  out.normals = of.normals;
-  out.bands = of.bands;
-  out.grid = of.grid;
-  out.front = of.front;
-  out.back = of.back;
-  return out;
-}
-
 bool is_alike(const Sampler &a, const Sampler &b) {
   return a.mirror_share == b.mirror_share && a.cosine_share == b.cosine_share &&
          a.normals.form.kind == b.normals.form.kind && a.normals.form.shape == b.normals.form.shape;
@@ -36,9 +26,11 @@ struct Probe {
   std::vector<Vec3<Body>> to = {};
 };
 
+constexpr std::array probe_cosines{0.95, 0.6, 0.2};
+
 std::vector<Probe> probes() {
   std::vector<Probe> out;
-  for (const double cosine : {0.95, 0.6, 0.2}) {
+  for (const double cosine : probe_cosines) {
     Probe &probe = out.emplace_back(Probe{{std::sqrt(1 - cosine * cosine), 0, cosine}});
     for (const double tilt : {0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 0.8})
       for (const Vec3<Body> about : {Vec3<Body>{std::sin(tilt), 0, std::cos(tilt)},
@@ -49,76 +41,103 @@ std::vector<Probe> probes() {
   return out;
 }
 
-double mean_albedo(const Surface &surface, std::size_t bands, Vec3<Facet> from) {
+double mean_brdf(const Surface &surface, std::size_t bands, const SurfaceDirections &on) {
   double mean = 0;
   for (std::size_t b = 0; b < bands; ++b)
-    mean += surface.albedo(b, from) / static_cast<double>(bands);
+    mean += surface.brdf(b, on).m[0][0] / static_cast<double>(bands);
   return mean;
 }
 
-/// How many times as much as the other in the mean of its bands, of the light from a direction; no
-/// less than 1. What is as much brighter everywhere has as much fewer chains, and half-widths know.
-double times_as_much(double albedo, double old_mean) {
-  constexpr double most = 32;
-  return old_mean > 0 ? std::clamp(albedo / old_mean, 1.0, most) : 1;
+/// As much of the light as goes like from a mirror.
+double mirrored_part(const Surface &surface, std::size_t band, double cosine) {
+  return surface.mirror_part(band, cosine) * surface.reflection(band, cosine).a;
 }
 
-/// Nowhere, and in no band, a few times as much as the other in the mean of its bands beyond that:
-/// of what goes where the other sends little few chains would carry most, and no half-width tell.
-bool is_within(const Surface &surface, const Surface &old, std::size_t bands,
-               std::size_t old_bands) {
-  constexpr double most = 8;
-  if (surface.is_same(old))
-    return true;
-  if (surface.has_mirror() && !old.has_mirror())
-    return false;
+std::size_t bands_of(const Scene &scene) { return scene.grid.nodes().size(); }
+
+/// Calls `f` with the directions of each probe.
+template <class F> void for_each_probe(const F &f) {
   const Vec3<Body> normal{0, 0, 1}, field{1, 0, 0};
-  for (const auto &[from, all_to] : probes()) {
-    const Vec3<Facet> on_facet{from.x, from.y, from.z};
-    const double old_mean = mean_albedo(old, old_bands, on_facet);
-    std::vector<double> allowed;
-    for (std::size_t b = 0; b < bands; ++b)
-      allowed.push_back(most * times_as_much(surface.albedo(b, on_facet), old_mean));
-    double mirrored = 0;
-    for (std::size_t b = 0; b < old_bands; ++b)
-      mirrored += old.mirror_part(b, from.z) * old.reflection(b, from.z).a;
-    for (std::size_t b = 0; b < bands; ++b)
-      if (surface.mirror_part(b, from.z) * surface.reflection(b, from.z).a >
-          allowed[b] * mirrored / static_cast<double>(old_bands))
-        return false;
-    for (const Vec3<Body> &to : all_to) {
-      const auto on = directions_on(normal, field, from, to, dot(from, to), 0);
-      double sum = 0;
-      for (std::size_t b = 0; b < old_bands; ++b)
-        sum += old.brdf(b, on).m[0][0];
-      for (std::size_t b = 0; b < bands; ++b)
-        if (surface.brdf(b, on).m[0][0] > allowed[b] * sum / static_cast<double>(old_bands))
-          return false;
+  for (const auto &[from, all_to] : probes())
+    for (const Vec3<Body> &to : all_to)
+      f(directions_on(normal, field, from, to, dot(from, to), 0));
+}
+
+/// What tells materials apart, and orders them, whatever they are called.
+std::vector<double> looks_of(const Scene &sides) {
+  std::vector<double> out;
+  for (std::uint32_t slot = 0; slot < slots_of(sides); ++slot) {
+    const Surface &surface = surface_of_slot(sides, slot);
+    for (std::size_t b = 0; b < bands_of(sides); ++b) {
+      for (const double cosine : probe_cosines)
+        out.push_back(mirrored_part(surface, b, cosine));
+      for_each_probe(
+          [&](const SurfaceDirections &on) { out.push_back(surface.brdf(b, on).m[0][0]); });
     }
+    const Vec3<Body> direction = surface.material().direction.value_or(Vec3<Body>{});
+    out.insert(out.end(), {direction.x, direction.y, direction.z});
   }
+  return out;
+}
+
+/// By their looks: sums over members and draws among them are the same to the last bit for whoever
+/// draws first.
+void put_in_order(std::vector<ChainMember> &members) {
+  if (members.size() < 2)
+    return;
+  std::vector<std::pair<std::vector<double>, ChainMember>> keyed;
+  for (ChainMember &member : members) {
+    std::vector<double> looks = looks_of(*member.sides);
+    keyed.emplace_back(std::move(looks), std::move(member));
+  }
+  std::ranges::stable_sort(
+      keyed, {}, [](const auto &one) -> const auto & { return one.first; });
+  for (std::size_t m = 0; m < members.size(); ++m)
+    members[m] = std::move(keyed[m].second);
+}
+
+bool has_same_nodes(const Scene &a, const Scene &b) {
+  return std::ranges::equal(a.grid.nodes(), b.grid.nodes(), [](const Band &x, const Band &y) {
+    return x.wavelength.nm() == y.wavelength.nm();
+  });
+}
+
+/// Compiled of the same. A measured table is known by its file, which each reads anew.
+bool is_of_same(const Surface &a, const Surface &b) {
+  if (a.is_same(b))
+    return true;
+  Material x = a.material();
+  const Material &y = b.material();
+  if (x.measured && y.measured && !x.measured_file.empty() && x.measured_file == y.measured_file)
+    x.measured = y.measured;
+  return x == y;
+}
+
+bool is_black(const Surface &surface, std::size_t bands) {
+  for (std::size_t b = 0; b < bands; ++b)
+    for (const Probe &probe : probes())
+      if (surface.albedo(b, {probe.from.x, probe.from.y, probe.from.z}) > 0)
+        return false;
   return true;
 }
 
 } // namespace
 
-ChainCover::Member::Member(const Scene &of) : sides(without_mesh(of)), surfaces(sides) {}
-
-ChainCover::ChainCover(const std::vector<const Scene *> &scenes) {
-  for (const Scene *scene : scenes)
-    members_.push_back(std::make_unique<const Member>(*scene));
+ChainCover::ChainCover(std::vector<ChainMember> members) : members_(std::move(members)) {
+  put_in_order(members_);
   std::map<std::vector<std::uint32_t>, std::uint32_t> known; // kinds in all members
-  for (std::uint32_t slot = 0; slot < slots_of(*scenes.front()); ++slot) {
+  for (std::uint32_t slot = 0; slot < slots_of(sides(0)); ++slot) {
     std::vector<std::uint32_t> of_members;
-    for (const auto &member : members_)
-      of_members.push_back(member->surfaces.kind_of(&surface_of_slot(member->sides, slot)));
+    for (const ChainMember &member : members_)
+      of_members.push_back(member.surfaces->kind_of(&surface_of_slot(*member.sides, slot)));
     const auto found = known.emplace(of_members, static_cast<std::uint32_t>(slot_.size()));
     kind_.push_back(found.first->second);
     if (!found.second)
       continue;
     slot_.push_back(slot);
     std::vector<Sampler> &ways = samplers_.emplace_back();
-    for (const auto &member : members_) {
-      const Sampler own(surface_of_slot(member->sides, slot));
+    for (const ChainMember &member : members_) {
+      const Sampler own(surface_of_slot(*member.sides, slot));
       if (std::ranges::none_of(ways, [&](const Sampler &way) { return is_alike(way, own); }))
         ways.push_back(own);
     }
@@ -148,30 +167,63 @@ Direction ChainCover::draw(std::uint32_t slot, Vec3<Body> normal, Vec3<Body> fro
   return out;
 }
 
-/// Slots that chains do not tell apart must be alike, and what chains left to paths must stay
-/// there.
-bool ChainCover::has_kinds_of(const Scene &scene, const ChainSurfaces &surfaces) const {
+std::optional<std::size_t> ChainCover::member_like(const Scene &scene) const {
+  for (std::size_t m = 0; m < members_.size(); ++m) {
+    bool is_like = slots_of(scene) == kind_.size() && has_same_nodes(scene, sides(m));
+    for (std::uint32_t slot = 0; is_like && slot < kind_.size(); ++slot)
+      is_like = is_of_same(surface_of_slot(scene, slot), surface_of_slot(sides(m), slot));
+    if (is_like)
+      return m;
+  }
+  return {};
+}
+
+bool ChainCover::has_kinds_of(const Scene &scene, const ChainSurfaces &other) const {
+  if (slots_of(scene) != kind_.size())
+    return false;
   const auto kind = [&](std::uint32_t slot) {
-    return surfaces.kind_of(&surface_of_slot(scene, slot));
+    return other.kind_of(&surface_of_slot(scene, slot));
   };
   for (std::uint32_t slot = 0; slot < kind_.size(); ++slot)
     if (kind(slot) != kind(slot_[kind_[slot]]))
       return false;
   for (std::uint32_t a = 0; a < slot_.size(); ++a)
     for (std::uint32_t b = 0; b < slot_.size(); ++b)
-      if (!is_any(a, b) && surfaces.part(kind(slot_[a]), kind(slot_[b])) != ChainPart::Nothing)
+      if (!is_any(a, b) && other.part(kind(slot_[a]), kind(slot_[b])) != ChainPart::Nothing)
         return false;
-  return true;
+  return std::ranges::all_of(slot_, [&](std::uint32_t slot) {
+    const Surface &surface = surface_of_slot(scene, slot);
+    bool has_mirror = false, has_light = false;
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      const Surface &known = surface_of_slot(sides(m), slot);
+      has_mirror = has_mirror || known.has_mirror();
+      has_light = has_light || !is_black(known, bands_of(sides(m)));
+    }
+    return (has_mirror || !surface.has_mirror()) &&
+           (has_light || is_black(surface, bands_of(scene)));
+  });
 }
 
-bool ChainCover::serves(const Scene &scene, const ChainSurfaces &surfaces) const {
-  if (slots_of(scene) != kind_.size() || !has_kinds_of(scene, surfaces))
-    return false;
-  return std::ranges::any_of(members_, [&](const auto &member) {
-    return std::ranges::all_of(slot_, [&](std::uint32_t slot) {
-      return is_within(surface_of_slot(scene, slot), surface_of_slot(member->sides, slot),
-                       scene.grid.nodes().size(), member->sides.grid.nodes().size());
-    });
+bool ChainCover::is_within(const Scene &scene, std::uint32_t slot, double most) const {
+  const Surface &surface = surface_of_slot(scene, slot);
+  return std::ranges::any_of(members_, [&](const ChainMember &member) {
+    const Surface &known = surface_of_slot(*member.sides, slot);
+    if (is_of_same(surface, known) && has_same_nodes(scene, *member.sides))
+      return true;
+    const std::size_t of_known = bands_of(*member.sides);
+    bool holds = true;
+    for (std::size_t b = 0; b < bands_of(scene) && holds; ++b) {
+      for (const double cosine : probe_cosines) {
+        double mean = 0;
+        for (std::size_t k = 0; k < of_known; ++k)
+          mean += mirrored_part(known, k, cosine) / static_cast<double>(of_known);
+        holds = holds && mirrored_part(surface, b, cosine) <= most * mean;
+      }
+      for_each_probe([&](const SurfaceDirections &on) {
+        holds = holds && surface.brdf(b, on).m[0][0] <= most * mean_brdf(known, of_known, on);
+      });
+    }
+    return holds;
   });
 }
 

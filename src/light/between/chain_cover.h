@@ -4,23 +4,29 @@
 #include "light/between/chain_surfaces.h"
 
 #include <memory>
+#include <optional>
 #include <umov/scene/scene.h>
 
 namespace umov {
 
+/// One set of materials: what each slot is of, without regard to its mesh. Both must live.
+struct ChainMember {
+  const Scene *sides = nullptr;
+  std::shared_ptr<const ChainSurfaces> surfaces; ///< of the scene
+};
+
 /// One set of materials or several, the members, whose chains are the same: at each surface they go
 /// on as one of the members would have it, each as often. Slots that are alike in all members are
-/// of one kind.
+/// of one kind. What is drawn does not depend on the order in which the members come.
 class ChainCover {
 public:
-  /// Meshes, of which only that of the first is used elsewhere, and slots must be the same.
-  explicit ChainCover(const std::vector<const Scene *> &scenes);
+  /// Slots must be the same.
+  explicit ChainCover(std::vector<ChainMember> members);
 
   [[nodiscard]] std::size_t members() const { return members_.size(); }
-  /// Materials of a member, without a mesh.
-  [[nodiscard]] const Scene &sides(std::size_t member) const { return members_[member]->sides; }
+  [[nodiscard]] const Scene &sides(std::size_t member) const { return *members_[member].sides; }
   [[nodiscard]] const ChainSurfaces &surfaces(std::size_t member) const {
-    return members_[member]->surfaces;
+    return *members_[member].surfaces;
   }
   [[nodiscard]] std::uint32_t kind_of(std::uint32_t slot) const { return kind_[slot]; }
   /// A slot of each kind.
@@ -40,19 +46,17 @@ public:
     return surfaces(member).strength(of_members_[kind][member], cosine);
   }
 
-  /// Whether chains drawn for this cover tell the light of other materials, too: nowhere do these
-  /// scatter much more than those of some member do. Below, few chains would carry most of it.
-  [[nodiscard]] bool serves(const Scene &scene, const ChainSurfaces &surfaces) const;
+  /// Which member is of the same materials at the same wavelengths.
+  [[nodiscard]] std::optional<std::size_t> member_like(const Scene &scene) const;
+  /// Slots that chains do not tell apart are alike in other materials, too, and what chains left to
+  /// paths stays there; nowhere do these send light where that of no member goes on.
+  [[nodiscard]] bool has_kinds_of(const Scene &scene, const ChainSurfaces &surfaces) const;
+  /// In no direction, and in no band, do other materials scatter more of a slot's light than `most`
+  /// times what some member does in the mean of its bands. Asked of some directions.
+  [[nodiscard]] bool is_within(const Scene &scene, std::uint32_t slot, double most) const;
 
 private:
-  struct Member {
-    Scene sides;
-    ChainSurfaces surfaces;
-    explicit Member(const Scene &of);
-  };
-  [[nodiscard]] bool has_kinds_of(const Scene &scene, const ChainSurfaces &surfaces) const;
-
-  std::vector<std::unique_ptr<const Member>> members_;
+  std::vector<ChainMember> members_;
   std::vector<std::uint32_t> kind_, slot_;
   std::vector<std::vector<Sampler>> samplers_;         ///< per kind
   std::vector<std::vector<std::uint32_t>> of_members_; ///< per kind: that of each member

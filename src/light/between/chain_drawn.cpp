@@ -1,5 +1,6 @@
 #include "light/between/chain_drawn.h"
 
+#include "light/between/made_once.h"
 #include "light/fast/octahedron.h"
 
 #include <algorithm>
@@ -232,10 +233,9 @@ ChainDrawn draw_chains(const ChainRays &rays, const Occluder &occluder, const Oc
   return out;
 }
 
-ChainDrawing::ChainDrawing(const BounceScene &scene, const Occluder &occluder,
-                           const std::vector<const Scene *> &materials, std::size_t bounces,
-                           std::uint64_t seed, const std::atomic<bool> *cancel)
-    : cover_(materials), rays_(scene, occluder, cover_, bounces, seed), occluder_(occluder),
+ChainDrawing::ChainDrawing(const BounceScene &scene, const Occluder &occluder, ChainCover cover,
+                           std::size_t bounces, std::uint64_t seed, const std::atomic<bool> *cancel)
+    : cover_(std::move(cover)), rays_(scene, occluder, cover_, bounces, seed), occluder_(occluder),
       grids_(scene.scene().mesh, Occluder::Rays::Grid, cancel), seed_(seed) {}
 
 ChainCount ChainDrawing::count_of(std::size_t level) {
@@ -249,29 +249,22 @@ ChainCount ChainDrawing::count_of(std::size_t level) {
   return out;
 }
 
-const ChainDrawn *ChainDrawing::level(std::size_t index, unsigned threads,
+const ChainDrawn *ChainDrawing::drawn(std::size_t level, unsigned threads,
                                       const std::atomic<bool> *cancel) const {
-  const WriteLock lock(mutex_);
-  if (!level_[index]) {
-    auto made = std::make_unique<const ChainDrawn>(
-        draw_chains(rays_, occluder_, &grids_, count_of(index), threads, cancel));
-    if (is_stopped(cancel))
-      return nullptr; // whoever asks next begins anew
-    level_[index] = std::move(made);
-  }
-  return level_[index].get();
+  return made_once(mutex_, drawn_[level], cancel, [&] {
+    const Occluder *grids = level < levels ? &grids_ : nullptr; // the reserve's ends ask rays
+    return std::make_unique<const ChainDrawn>(
+        draw_chains(rays_, occluder_, grids, count_of(level), threads, cancel));
+  });
 }
 
-const ChainDrawn *ChainDrawing::reserve(unsigned threads, const std::atomic<bool> *cancel) const {
-  const WriteLock lock(mutex_);
-  if (!reserve_) {
-    auto made = std::make_unique<const ChainDrawn>(
-        draw_chains(rays_, occluder_, nullptr, count_of(levels), threads, cancel));
-    if (is_stopped(cancel))
-      return nullptr;
-    reserve_ = std::move(made);
-  }
-  return reserve_.get();
+bool ChainDrawing::serves(const Scene &scene, const ChainSurfaces &surfaces,
+                          const std::atomic<bool> *cancel) const {
+  const ChainTrial *trial = made_once(mutex_, trial_, cancel, [&] {
+    return std::make_unique<const ChainTrial>(rays_, cover_, count_of(levels + 1).first, cancel);
+  });
+  leave_if_stopped(cancel);
+  return trial->serves(scene, surfaces, cancel);
 }
 
 } // namespace umov

@@ -3,7 +3,7 @@
 // lies between, and in which directions their ends are free.
 
 #include "backend/chain_data.h"
-#include "light/between/chain_rays.h"
+#include "light/between/chain_trial.h"
 #include "light/between/replicates.h"
 
 #include <array>
@@ -57,19 +57,21 @@ public:
   static constexpr std::array<std::size_t, levels> chains_of{16'384, 49'152, 196'608};
 
   /// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
-  ChainDrawing(const BounceScene &scene, const Occluder &occluder,
-               const std::vector<const Scene *> &materials, std::size_t bounces, std::uint64_t seed,
-               const std::atomic<bool> *cancel);
+  ChainDrawing(const BounceScene &scene, const Occluder &occluder, ChainCover cover,
+               std::size_t bounces, std::uint64_t seed, const std::atomic<bool> *cancel);
 
   [[nodiscard]] const ChainCover &cover() const { return cover_; }
   [[nodiscard]] const Occluder &occluder() const { return occluder_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  /// Where in the lattices the rays of a level, or after the last of the reserve, begin.
+  /// Where in the lattices the rays of a level, after the last of the reserve, after that of the
+  /// trial, begin.
   [[nodiscard]] static ChainCount count_of(std::size_t level);
-  /// Null if `cancel` became true.
-  [[nodiscard]] const ChainDrawn *level(std::size_t index, unsigned threads,
+  /// A level, or after the last the reserve. Null if `cancel` became true.
+  [[nodiscard]] const ChainDrawn *drawn(std::size_t level, unsigned threads,
                                         const std::atomic<bool> *cancel) const;
-  [[nodiscard]] const ChainDrawn *reserve(unsigned threads, const std::atomic<bool> *cancel) const;
+  /// ChainTrial::serves. Throws Failure (Interrupted) once `cancel` became true.
+  [[nodiscard]] bool serves(const Scene &scene, const ChainSurfaces &surfaces,
+                            const std::atomic<bool> *cancel) const;
 
 private:
   ChainCover cover_;
@@ -78,8 +80,8 @@ private:
   Occluder grids_; ///< for the many rays of the ends' visibility
   std::uint64_t seed_;
   mutable Mutex mutex_;
-  mutable std::array<std::unique_ptr<const ChainDrawn>, levels> level_;
-  mutable std::unique_ptr<const ChainDrawn> reserve_;
+  mutable std::array<std::unique_ptr<const ChainDrawn>, levels + 1> drawn_;
+  mutable std::unique_ptr<const ChainTrial> trial_;
 };
 
 } // namespace umov

@@ -21,7 +21,8 @@ public:
   void pass(const ChainVertex &at);
   /// From the axis of an end that lies where the last direction leads to that of the first end.
   [[nodiscard]] Matrix from(Vec3<Body> axis, std::size_t band) const;
-  /// The largest M00 of the bands, and their mean.
+  /// M00 of a band, the largest of the bands, and their mean.
+  [[nodiscard]] double transmitted(std::size_t band) const { return matrix_[band].m[0][0]; }
   [[nodiscard]] double strongest() const;
   [[nodiscard]] double transmitted() const;
 

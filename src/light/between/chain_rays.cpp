@@ -161,14 +161,12 @@ ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t 
   return out;
 }
 
-double ChainRays::freedom(const ChainEnd &end, const std::array<double, 4> &u,
+double ChainRays::freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
                           std::uint64_t stream) const {
-  constexpr std::size_t looks = 4;
+  constexpr std::uint32_t looks = 4;
   std::size_t free = 0;
-  const std::vector<Sampler> &ways = cover_.samplers(end.slot);
-  for (std::size_t k = 0; k < looks; ++k) {
-    const auto x =
-        k == 0 ? u : uniform4(seed_, look_stream + static_cast<std::uint32_t>(k), stream);
+  for (std::uint32_t k = 0; k < looks; ++k) {
+    const auto x = uniform4(seed_, look_stream + k, stream);
     const Direction d = ways[k % ways.size()].draw(end.normal, end.along, x[0], x[1], x[2]);
     if (!(dot(d.to, end.face) > 0))
       continue;
@@ -192,6 +190,13 @@ double ChainRays::strength(const ChainList &all, std::size_t chain) const {
   return std::sqrt(square);
 }
 
+double ChainRays::matters(const ChainList &all, std::size_t chain, std::uint64_t number) const {
+  const Chain &c = all.chains[chain];
+  return (c.from_p + c.from_q) * strength(all, chain) *
+         freedom(c.p, cover_.samplers(c.p.slot), 2 * number) *
+         freedom(c.q, cover_.samplers(c.q.slot), 2 * number + 1);
+}
+
 std::uint64_t likeness(const Chain &chain) {
   const auto cell = [](Vec3<Body> a, double cells) {
     const auto f = [&](double x) {
@@ -211,15 +216,11 @@ std::uint64_t likeness(const Chain &chain) {
 ChainList ChainRays::thinned(const ChainList &all, std::size_t replicate, std::size_t first,
                              std::size_t kept, const std::atomic<bool> *cancel) const {
   std::vector<double> matters;
-  const std::uint64_t begin = (static_cast<std::uint64_t>(replicate) << 56U) + first * bounces_;
+  const std::uint64_t begin = number_of_first(replicate, first);
   for (std::size_t k = 0; k < all.chains.size(); ++k) {
     if (is_stopped(cancel))
       return {};
-    const Chain &c = all.chains[k];
-    const std::uint64_t stream = 2 * (begin + k);
-    matters.push_back((c.from_p + c.from_q) * strength(all, k) *
-                      freedom(c.p, uniform4(seed_, look_stream, stream), stream) *
-                      freedom(c.q, uniform4(seed_, look_stream, stream + 1), stream + 1));
+    matters.push_back(this->matters(all, k, begin + k));
   }
   // Chances are `scale` times what matters, at most 1, and add up to `kept`.
   double low = 0, high = 1e30;

@@ -25,6 +25,16 @@ public:
   /// weight growing as it gets rarer, and evenly among like ones. Over all members of the cover.
   [[nodiscard]] ChainList thinned(const ChainList &all, std::size_t replicate, std::size_t first,
                                   std::size_t kept, const std::atomic<bool> *cancel) const;
+  /// Where in the sequences by which chains are looked at the first of a list stands.
+  [[nodiscard]] std::uint64_t number_of_first(std::size_t replicate, std::size_t first) const {
+    return (static_cast<std::uint64_t>(replicate) << 56U) + first * bounces_;
+  }
+  /// How much a chain matters over all poses; `number` in those sequences.
+  [[nodiscard]] double matters(const ChainList &all, std::size_t chain, std::uint64_t number) const;
+  /// Root of the part of an end's light that is free, of a surface that sends it in these ways.
+  [[nodiscard]] double freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
+                               std::uint64_t stream) const;
+  [[nodiscard]] std::size_t bounces() const { return bounces_; }
 
 private:
   struct Walk;
@@ -34,9 +44,6 @@ private:
   /// One surface further: false where the walk ends.
   [[nodiscard]] bool step(Walk &walk, Vertex &at, Vec3<Body> &back,
                           const std::array<double, 4> &u) const;
-  /// Root of the part of an end's light that is free.
-  [[nodiscard]] double freedom(const ChainEnd &end, const std::array<double, 4> &u,
-                               std::uint64_t stream) const;
   /// rms over the members of what a chain carries between all directions of its ends.
   [[nodiscard]] double strength(const ChainList &all, std::size_t chain) const;
 

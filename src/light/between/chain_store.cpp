@@ -1,5 +1,7 @@
 #include "light/between/chain_store.h"
 
+#include "light/between/made_once.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -97,37 +99,25 @@ struct ChainStore::Climb {
   std::vector<double> narrow_i, narrow_squares; ///< per pose: of light between narrow lobes
 };
 
-ChainStore::ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene &scene)
-    : drawing_(std::move(drawing)), surfaces_(scene), materials_{scene, surfaces_, *drawing_},
+ChainStore::ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene &scene,
+                       std::shared_ptr<const ChainSurfaces> surfaces)
+    : drawing_(std::move(drawing)),
+      surfaces_(std::move(surfaces)), materials_{scene, *surfaces_, *drawing_},
       bands_(scene.grid.nodes().size()) {}
 
 const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
                                     const std::atomic<bool> *cancel) const {
-  const WriteLock lock(mutex_);
-  if (!level_[index]) {
-    const ChainDrawn *drawn = drawing_->level(index, threads, cancel);
-    if (drawn == nullptr)
-      return nullptr;
-    auto made = std::make_unique<const ChainLevel>(*drawn, materials_, index, threads, cancel);
-    if (is_stopped(cancel))
-      return nullptr; // whoever asks next begins anew
-    level_[index] = std::move(made);
-  }
-  return level_[index].get();
+  const ChainDrawn *drawn = drawing_->drawn(index, threads, cancel);
+  return drawn == nullptr ? nullptr : made_once(mutex_, level_[index], cancel, [&] {
+    return std::make_unique<const ChainLevel>(*drawn, materials_, index, threads, cancel);
+  });
 }
 
 const ChainReserve *ChainStore::reserve(unsigned threads, const std::atomic<bool> *cancel) const {
-  const WriteLock lock(mutex_);
-  if (!reserve_) {
-    const ChainDrawn *drawn = drawing_->reserve(threads, cancel);
-    if (drawn == nullptr)
-      return nullptr;
-    auto made = std::make_unique<const ChainReserve>(*drawn, materials_, threads, cancel);
-    if (is_stopped(cancel))
-      return nullptr;
-    reserve_ = std::move(made);
-  }
-  return reserve_.get();
+  const ChainDrawn *drawn = drawing_->drawn(levels, threads, cancel);
+  return drawn == nullptr ? nullptr : made_once(mutex_, reserve_, cancel, [&] {
+    return std::make_unique<const ChainReserve>(*drawn, materials_, threads, cancel);
+  });
 }
 
 void ChainStore::add_level(std::size_t index, std::span<const Pose> poses,
@@ -221,8 +211,8 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
   out.light.resize(poses.size());
   out.is_enough.assign(poses.size(), 1);
   const bool has_reserve =
-      surfaces_.are_fast() && static_cast<double>(options.max_points) >= all_weights;
-  if (has_reserve && surfaces_.are_narrow())
+      surfaces_->are_fast() && static_cast<double>(options.max_points) >= all_weights;
+  if (has_reserve && surfaces_->are_narrow())
     out.is_enough.assign(poses.size(), 0);
   else
     climb(poses, direct_i, options, out, threads, cancel);

@@ -18,8 +18,9 @@ namespace umov {
 /// on what was asked before. Thread safe; what it is made from must live.
 class ChainStore {
 public:
-  /// Chains that were drawn for this scene or serve it (ChainCover::serves).
-  ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene &scene);
+  /// Chains that were drawn for this scene or serve it (ChainTrial); `surfaces` of the scene.
+  ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene &scene,
+             std::shared_ptr<const ChainSurfaces> surfaces);
 
   struct Answer {
     std::vector<IndirectLight> light;
@@ -32,7 +33,7 @@ public:
   [[nodiscard]] Answer light(std::span<const Pose> poses, std::span<const double> direct_i,
                              const IntegrationOptions &options, unsigned threads,
                              const std::atomic<bool> *cancel) const;
-  [[nodiscard]] const ChainSurfaces &surfaces() const { return surfaces_; }
+  [[nodiscard]] const ChainSurfaces &surfaces() const { return *surfaces_; }
   static constexpr std::size_t levels = ChainDrawing::levels;
 
 private:
@@ -53,7 +54,7 @@ private:
                    const std::atomic<bool> *cancel) const;
 
   std::shared_ptr<const ChainDrawing> drawing_;
-  ChainSurfaces surfaces_;
+  std::shared_ptr<const ChainSurfaces> surfaces_;
   ChainMaterials materials_;
   std::size_t bands_;
   mutable Mutex mutex_;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <umov/core/random.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -115,7 +116,7 @@ bool is_left_to_paths(const Surface &surface) {
 
 } // namespace
 
-ChainSurfaces::ChainSurfaces(const Scene &scene) {
+ChainSurfaces::ChainSurfaces(const Scene &scene, const std::atomic<bool> *cancel) {
   const std::size_t bands = scene.grid.nodes().size();
   for (const auto *side : {&scene.front, &scene.back})
     for (const Surface &surface : *side) {
@@ -128,6 +129,7 @@ ChainSurfaces::ChainSurfaces(const Scene &scene) {
     }
   fast_.resize(surface_.size() * bands);
   for (std::uint32_t kind = 0; kind < surface_.size(); ++kind) {
+    leave_if_stopped(cancel);
     bool is_fast = true;
     for (std::size_t b = 0; b < bands && is_fast; ++b) {
       backend::ChainSurface &to = fast_[kind * bands + b];
@@ -151,7 +153,19 @@ ChainSurfaces::ChainSurfaces(const Scene &scene) {
     are_fast_ = are_fast_ && is_fast(a);
     are_narrow_ = are_narrow_ && !surface_[a]->has_diffuse() && is_narrow(a);
   }
-  tabulate_strength(bands);
+  tabulate_strength(bands, cancel);
+}
+
+ChainSurfaces::ChainSurfaces(const ChainSurfaces &known, const Scene &of_known, const Scene &scene)
+    : ChainSurfaces(known) {
+  kind_.clear();
+  for (const auto side : {&Scene::front, &Scene::back})
+    for (std::size_t g = 0; g < (scene.*side).size(); ++g) {
+      const std::uint32_t kind = known.kind_of(&(of_known.*side)[g]);
+      const Surface *surface = &(scene.*side)[g];
+      kind_[surface] = kind;
+      surface_[kind] = surface;
+    }
 }
 
 bool ChainSurfaces::is_narrow(std::uint32_t kind) const {
@@ -167,7 +181,7 @@ ChainPart ChainSurfaces::part(std::uint32_t a, std::uint32_t b) const {
   return is_lobe_alone ? ChainPart::Nothing : ChainPart::WithoutLobes;
 }
 
-void ChainSurfaces::tabulate_strength(std::size_t bands) {
+void ChainSurfaces::tabulate_strength(std::size_t bands, const std::atomic<bool> *cancel) {
   constexpr std::size_t draws = 512;
   const Vec3<Body> normal{0, 0, 1};
   for (const Surface *surface : surface_) {
@@ -176,6 +190,7 @@ void ChainSurfaces::tabulate_strength(std::size_t bands) {
       continue;
     const Sampler sampler(*surface);
     for (std::size_t k = 0; k <= cosines; ++k) {
+      leave_if_stopped(cancel);
       const double c = std::max(0.02, static_cast<double>(k) / cosines);
       const Vec3<Body> w{std::sqrt(1 - c * c), 0, c};
       for (std::size_t i = 0; i < draws; ++i) {

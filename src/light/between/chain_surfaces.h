@@ -4,6 +4,7 @@
 #include "backend/chain_data.h"
 #include "light/between/directions.h"
 
+#include <atomic>
 #include <umov/scene/scene.h>
 #include <unordered_map>
 #include <vector>
@@ -21,7 +22,10 @@ enum class ChainPart : std::uint8_t {
 /// form in which the vector unit computes them.
 class ChainSurfaces {
 public:
-  explicit ChainSurfaces(const Scene &scene);
+  /// `scene` must live. Throws Failure (Interrupted) once `cancel`, which may be null, became true.
+  explicit ChainSurfaces(const Scene &scene, const std::atomic<bool> *cancel = nullptr);
+  /// Those of another scene, known to be of the same materials slot by slot: nothing is tabulated.
+  ChainSurfaces(const ChainSurfaces &known, const Scene &of_known, const Scene &scene);
   [[nodiscard]] std::uint32_t kind_of(const Surface *surface) const { return kind_.at(surface); }
   [[nodiscard]] std::size_t size() const { return surface_.size(); }
   [[nodiscard]] const Surface &surface(std::uint32_t kind) const { return *surface_[kind]; }
@@ -46,7 +50,7 @@ public:
   [[nodiscard]] double strength(std::uint32_t kind, double cosine) const;
 
 private:
-  void tabulate_strength(std::size_t bands);
+  void tabulate_strength(std::size_t bands, const std::atomic<bool> *cancel);
   std::vector<const Surface *> surface_;
   std::unordered_map<const Surface *, std::uint32_t> kind_;
   std::vector<char> is_fast_, leaves_any_;

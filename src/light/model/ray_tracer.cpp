@@ -41,7 +41,7 @@ RayTracer::RayTracer(const Scene &scene, const std::vector<Joint> &joints,
                      ChainSharing chains)
     : scene_(scene), joints_(joints), options_(std::move(options)),
       material_of_(material_of_slots(scene, materials)), materials_(materials.size()),
-      chains_(std::move(chains)) {
+      chains_(without_meshes(std::move(chains), scene)) {
   if (!joints_.empty()) // another body at every pose: nothing to share
     options_.between = BetweenMethod::Paths;
 }

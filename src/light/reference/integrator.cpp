@@ -28,23 +28,35 @@ struct PathGround {
   const Occluder &occluder;
 };
 
-/// Slots of the one are slots of the other.
+/// Slots of the one are slots of the other. Without a mesh of its own a scene is on any.
 bool is_on_mesh_of(const Scene &a, const Scene &b) {
+  if (a.front.size() != b.front.size() || a.back.size() != b.back.size())
+    return false;
+  if (a.mesh.triangles.empty())
+    return true;
   const auto is_alike = [](const Triangle &s, const Triangle &t) {
     return s.vertex == t.vertex && s.normal == t.normal && s.front == t.front && s.back == t.back;
   };
   const auto &x = a.mesh.triangles, &y = b.mesh.triangles;
-  return a.normals == b.normals && a.front.size() == b.front.size() &&
-         std::equal(x.begin(), x.end(), y.begin(), y.end(), is_alike) &&
-         a.mesh.positions == b.mesh.positions && a.mesh.normals == b.mesh.normals;
+  return a.normals == b.normals && std::equal(x.begin(), x.end(), y.begin(), y.end(), is_alike) &&
+         a.mesh.positions == b.mesh.positions && a.mesh.normals == b.mesh.normals &&
+         a.mesh.tangents == b.mesh.tangents;
 }
 
 } // namespace
 
+ChainSharing without_meshes(ChainSharing sharing, const Scene &scene) {
+  std::erase_if(sharing.also, [&](const Scene &other) { return !is_on_mesh_of(other, scene); });
+  for (Scene &other : sharing.also)
+    other.mesh = {};
+  return sharing;
+}
+
 struct Integrator::State {
   State(const Scene &of, const std::atomic<bool> *cancel, ChainSharing shared)
-      : scene(of), sharing(std::move(shared)), is_convex(is_proven_convex(of.mesh, cancel)),
-        sides(visible_sides(of.mesh, cancel)), elements(make_elements(scene, sides, cancel)) {
+      : scene(of), sharing(without_meshes(std::move(shared), of)),
+        is_convex(is_proven_convex(of.mesh, cancel)), sides(visible_sides(of.mesh, cancel)),
+        elements(make_elements(scene, sides, cancel)) {
     if (!is_convex)
       occluder.emplace(scene.mesh, Occluder::Rays::Each, cancel);
   }
@@ -67,24 +79,43 @@ struct Integrator::State {
     const WriteLock lock(store_mutex);
     auto &store = stores[{options.bounces, options.seed}];
     if (!store) {
-      auto drawing = taken({options.bounces, options.seed}, cancel);
-      if (!drawing)
-        drawing = own_drawing({options.bounces, options.seed}, ground, cancel);
-      store = std::make_unique<const ChainStore>(std::move(drawing), scene);
+      const ChainKey key{options.bounces, options.seed};
+      Taken chains = taken(key, cancel);
+      if (!chains.drawing)
+        chains = {own_drawing(key, ground, cancel), own_surfaces(cancel)};
+      store = std::make_unique<const ChainStore>(std::move(chains.drawing), scene,
+                                                 std::move(chains.surfaces));
     }
     return store->surfaces().has_any() ? store.get() : nullptr;
   }
   /// How many surfaces, and the seed.
   using ChainKey = std::pair<std::size_t, std::uint64_t>;
-  /// The elder's chains; null where they do not serve.
-  std::shared_ptr<const ChainDrawing> taken(ChainKey key, const std::atomic<bool> *cancel) const {
+  /// Whose chains, and this scene's surfaces as their ends.
+  struct Taken {
+    std::shared_ptr<const ChainDrawing> drawing;
+    std::shared_ptr<const ChainSurfaces> surfaces;
+  };
+  /// The elder's chains; null where they do not serve. Under the mutex, as what it calls.
+  Taken taken(ChainKey key, const std::atomic<bool> *cancel) const {
     if (!sharing.elder || !is_on_mesh_of(scene, sharing.elder->state_->scene))
-      return nullptr;
-    const State &elder = *sharing.elder->state_;
-    const PathGround ground = elder.paths(cancel);
-    const WriteLock lock(elder.store_mutex);
-    auto drawing = elder.own_drawing(key, ground, cancel);
-    return drawing->cover().serves(scene, ChainSurfaces(scene)) ? drawing : nullptr;
+      return {};
+    std::shared_ptr<const ChainDrawing> drawing;
+    {
+      const State &elder = *sharing.elder->state_;
+      const PathGround ground = elder.paths(cancel);
+      const WriteLock lock(elder.store_mutex);
+      drawing = elder.own_drawing(key, ground, cancel);
+    }
+    const ChainCover &cover = drawing->cover();
+    if (const auto member = cover.member_like(scene)) {
+      if (!surfaces)
+        surfaces = std::make_shared<const ChainSurfaces>(cover.surfaces(*member),
+                                                         cover.sides(*member), scene);
+      return {std::move(drawing), surfaces};
+    }
+    if (!drawing->serves(scene, *own_surfaces(cancel), cancel))
+      return {};
+    return {std::move(drawing), surfaces};
   }
 
   Scene scene;
@@ -94,24 +125,35 @@ struct Integrator::State {
   Elements elements;
   mutable std::optional<Occluder> occluder; ///< direct light of a convex mesh does not ask for it
 
+  mutable Mutex store_mutex;
+
 private:
-  /// Under the mutex.
+  /// Tabulated once.
+  std::shared_ptr<const ChainSurfaces> own_surfaces(const std::atomic<bool> *cancel) const {
+    if (!surfaces)
+      surfaces = std::make_shared<const ChainSurfaces>(scene, cancel);
+    return surfaces;
+  }
   std::shared_ptr<const ChainDrawing> own_drawing(ChainKey key, const PathGround &ground,
                                                   const std::atomic<bool> *cancel) const {
     auto &drawing = drawings[key];
     if (!drawing) {
-      std::vector<const Scene *> materials{&scene};
-      for (const Scene &other : sharing.also)
-        if (is_on_mesh_of(other, scene))
-          materials.push_back(&other);
-      drawing = std::make_shared<const ChainDrawing>(ground.scene, ground.occluder, materials,
-                                                     key.first, key.second, cancel);
+      while (others.size() < sharing.also.size()) {
+        const Scene &other = sharing.also[others.size()];
+        others.push_back({&other, std::make_shared<const ChainSurfaces>(other, cancel)});
+      }
+      std::vector<ChainMember> members{{&scene, own_surfaces(cancel)}};
+      members.insert(members.end(), others.begin(), others.end());
+      drawing = std::make_shared<const ChainDrawing>(ground.scene, ground.occluder,
+                                                     ChainCover(std::move(members)), key.first,
+                                                     key.second, cancel);
     }
     return drawing;
   }
   mutable std::once_flag has_bounces;
   mutable std::optional<BounceScene> bounces;
-  mutable Mutex store_mutex;
+  mutable std::shared_ptr<const ChainSurfaces> surfaces;
+  mutable std::vector<ChainMember> others; ///< of sharing.also
   mutable std::map<ChainKey, std::shared_ptr<const ChainDrawing>> drawings;
   mutable std::map<ChainKey, std::unique_ptr<const ChainStore>> stores;
 };
@@ -124,8 +166,10 @@ Integrator &Integrator::operator=(Integrator &&) noexcept = default;
 
 bool Integrator::is_convex() const { return state_->is_convex; }
 
-bool Integrator::takes_chains(std::size_t bounces, std::uint64_t seed) const {
-  return state_->taken({bounces, seed}, nullptr) != nullptr;
+bool Integrator::takes_chains(std::size_t bounces, std::uint64_t seed,
+                              const std::atomic<bool> *cancel) const {
+  const WriteLock lock(state_->store_mutex);
+  return state_->taken({bounces, seed}, cancel).drawing != nullptr;
 }
 
 /// Throws Failure where it is stopped.
