@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
+#include <umov/shape/topology.h>
 
 namespace umov::jobs {
 
@@ -30,10 +32,11 @@ Result<Scenario> GroupLight::with(const GroupMaterial &part) const {
 }
 
 bool GroupLight::has_chains() const {
-  return scenario_.light.bounces > 1 && scenario_.light.between == BetweenMethod::Chains;
+  return scenario_.light.bounces > 1 && scenario_.light.between == BetweenMethod::Chains &&
+         scenario_.objects.front().parts.empty(); // what turns is lit by paths
 }
 
-/// The first draws chains for all, and the others take them.
+/// The first draws chains for all, and the others take them. Of a convex body there are none.
 Result<ChainFamily> GroupLight::family(const GroupMaterial &part, const Monitor &monitor) const {
   ChainFamily out;
   out.elder = first_.model;
@@ -46,6 +49,14 @@ Result<ChainFamily> GroupLight::family(const GroupMaterial &part, const Monitor 
     Diagnostics known; // those of the same files, told before
     UMOV_ASSIGN(object, load_object(scenario, 0,
                                     {.allow_old_elements = true, .cancel = monitor.cancel}, known));
+    if (out.also.empty()) { // all have one mesh
+      const auto ask = [&]() -> Result<bool> {
+        return is_proven_convex(object.scene.mesh, monitor.cancel);
+      };
+      UMOV_ASSIGN(is_convex, without_failures(ask));
+      if (is_convex)
+        break;
+    }
     out.also.push_back(std::move(object.scene));
   }
   return out;

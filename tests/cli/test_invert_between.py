@@ -3,6 +3,7 @@ the fit interpolates what chains light (docs/theory/inverse.md, 6.1). Truth is k
 import json
 import resource
 
+import pytest
 from test_invert import apart, in_set, observe, scene  # noqa: F401
 
 METALS = 'bus = "gold"\npanels = "silicon"\ndish = "aluminium"\ntank = "smooth"'
@@ -74,6 +75,9 @@ def test_chains_are_drawn_once_for_all_materials(umov, scene, tmp_path):
     found, of_four = ask("material", "obs.csv", "--group", "panels", "--candidates", "gold,silicon,aluminium,smooth")
     assert of_four < 1.6 * of_two  # twice as much with a drawing each; direct light is made for each
     assert found["verdict"] == "determined"
+    turned, _ = ask("material", "obs.csv", "--group", "panels", "--candidates", "smooth,aluminium,silicon,gold")
+    fractions = [{"|".join(sorted(one["materials"])): one["fraction"] for one in answer["materials"]} for answer in (found, turned)]
+    assert fractions[0] == pytest.approx(fractions[1], abs=1e-9)  # whoever draws the chains for all
     probability = {"|".join(one["materials"]): one["probability"] for one in found["materials"]}
     assert probability["silicon"] > 0.95 and sum(probability.values()) > 0.999
     health, _ = ask("health", "obs.csv", "--drift", "panels=gold")

@@ -10,7 +10,7 @@
 namespace umov {
 namespace {
 
-constexpr std::size_t trial_rays = 16'384;
+constexpr std::size_t trial_rays = 32'768;
 /// Kinds of surface, and pairs of them, that fewer chains are on than this are not told by them.
 constexpr std::size_t least_met = 64;
 

@@ -142,9 +142,12 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
                                          const LightOptions &options,
                                          const std::atomic<bool> *cancel, ChainFamily family) {
   UMOV_TRY(check(options));
-  ChainSharing chains{std::move(family.also), nullptr};
-  if (family.elder && joints.empty() && options.between == BetweenMethod::Chains)
-    chains.elder = family.elder->chain_drawer(cancel);
+  ChainSharing chains;
+  if (options.bounces > 1 && joints.empty() && options.between == BetweenMethod::Chains) {
+    chains.also = std::move(family.also);
+    if (family.elder && !family.elder->facts().is_convex)
+      chains.elder = family.elder->chain_drawer(cancel);
+  }
   const bool has_rays = takes_rays(scene, joints, options, cancel);
   if (has_rays && options.device.choice == DeviceChoice::Cuda)
     return fail(ErrorCode::Usage, "rays are traced by the processor, and cards add up what masks "
