@@ -79,6 +79,7 @@ LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &r
   out.seed = request.seed.value_or(scenario.seed);
   out.source = source;
   out.mask_file = request.mask_file;
+  out.poses_in_all = request.poses_in_all;
   return out;
 }
 

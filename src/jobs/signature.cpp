@@ -24,6 +24,13 @@ constexpr const char *laser_limits =
     "circular light about twice as fast as linear. For very rough metals near retro-reflection the "
     "double bounce is understated.";
 
+std::string between_of(const LightOptions &options) {
+  const bool has_all =
+      options.between != BetweenMethod::Chains || draws_reserve(options.poses_in_all);
+  return std::string(name_of(options.between)) +
+         (has_all ? "" : ", and paths where few of them are met");
+}
+
 /// What the header says of the source, of who lit (`device`) and of how hiding was decided.
 void describe(const SignatureRequest &request, const PoseLight &light, const std::string &device,
               Table &table) {
@@ -46,7 +53,7 @@ void describe(const SignatureRequest &request, const PoseLight &light, const std
     table.note("limits", laser_limits);
   table.note("visibility", visibility);
   if (light.options().bounces > 1)
-    table.note("between surfaces", name_of(light.options().between));
+    table.note("between surfaces", between_of(light.options()));
 }
 
 /// Chains cost seconds before the first pose, and are worth it where poses are many and do not tell
@@ -72,6 +79,7 @@ SignatureRequest decided(const Scenario &scenario, const PoseList &poses,
   SignatureRequest out = request;
   const BetweenMethod between = request.between.value_or(scenario.light.between);
   out.between = between == BetweenMethod::Auto ? between_for(poses) : between;
+  out.poses_in_all = poses.count;
   return out;
 }
 

@@ -185,7 +185,7 @@ def test_a_stop_is_heard_while_the_reserve_of_chains_is_drawn(tmp_path):
         '[object.materials]\ndefault = "m"\n[material.m]\nindex = { n = 0.4, k = 2.4 }\nshadowing = "separable"\n'
         'distribution = { model = "ggx", alpha = 0.12 }\n[bands]\nset = ["nm:550"]\n'
         '[render]\nbounces = 3\nbetween = "chains"\n')
-    process = subprocess.Popen([UMOV, "signature", "s.toml", "--poses", "2", "--phase", "60", "--threads", "1", "-o", "x.csv"],
+    process = subprocess.Popen([UMOV, "signature", "s.toml", "--poses", "32", "--phase", "60", "--threads", "1", "-o", "x.csv"],
                                cwd=tmp_path, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     while processor_s(process) < 1.5:
         time.sleep(0.01)

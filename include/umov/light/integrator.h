@@ -34,7 +34,14 @@ struct IntegrationOptions {
   /// Up to 64. Convex meshes have direct light alone.
   std::size_t bounces = 1;
   BetweenMethod between = BetweenMethod::Paths; ///< Auto is Paths
+  /// How many poses will be asked for, whoever asks for how many at a time; 0: many. Chains that
+  /// take seconds to draw are not drawn for few (`draws_reserve`).
+  std::size_t poses_in_all = 0;
 };
+
+/// Whether the reserve of a million chains for poses that few others meet, which takes as long as
+/// paths of a few dozen of them, is drawn for so many poses (0: many).
+bool draws_reserve(std::size_t poses_in_all);
 
 /// Light of one pose in all bands.
 struct PoseResult {

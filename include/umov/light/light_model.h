@@ -43,6 +43,7 @@ struct LightOptions {
   /// Up to 64.
   std::size_t bounces = 1;
   BetweenMethod between = BetweenMethod::Auto; ///< how that light is drawn; Auto here: paths
+  std::size_t poses_in_all = 0;                ///< IntegrationOptions::poses_in_all
   std::uint64_t seed = 0; ///< of point sets and paths; results depend on it within the error only
   /// Light of the source per unit irradiance, in the scattering plane: sunlight, or a laser's
   /// (which takes rays).

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -64,9 +65,10 @@ template <class F> void for_each_probe(const F &f) {
 }
 
 /// What tells materials apart, and orders them, whatever they are called.
-std::vector<double> looks_of(const Scene &sides) {
+std::vector<double> looks_of(const Scene &sides, const std::atomic<bool> *cancel) {
   std::vector<double> out;
   for (std::uint32_t slot = 0; slot < slots_of(sides); ++slot) {
+    leave_if_stopped(cancel);
     const Surface &surface = surface_of_slot(sides, slot);
     for (std::size_t b = 0; b < bands_of(sides); ++b) {
       for (const double cosine : probe_cosines)
@@ -82,12 +84,12 @@ std::vector<double> looks_of(const Scene &sides) {
 
 /// By their looks: sums over members and draws among them are the same to the last bit for whoever
 /// draws first.
-void put_in_order(std::vector<ChainMember> &members) {
+void put_in_order(std::vector<ChainMember> &members, const std::atomic<bool> *cancel) {
   if (members.size() < 2)
     return;
   std::vector<std::pair<std::vector<double>, ChainMember>> keyed;
   for (ChainMember &member : members) {
-    std::vector<double> looks = looks_of(*member.sides);
+    std::vector<double> looks = looks_of(*member.sides, cancel);
     keyed.emplace_back(std::move(looks), std::move(member));
   }
   std::ranges::stable_sort(
@@ -123,8 +125,9 @@ bool is_black(const Surface &surface, std::size_t bands) {
 
 } // namespace
 
-ChainCover::ChainCover(std::vector<ChainMember> members) : members_(std::move(members)) {
-  put_in_order(members_);
+ChainCover::ChainCover(std::vector<ChainMember> members, const std::atomic<bool> *cancel)
+    : members_(std::move(members)) {
+  put_in_order(members_, cancel);
   std::map<std::vector<std::uint32_t>, std::uint32_t> known; // kinds in all members
   for (std::uint32_t slot = 0; slot < slots_of(sides(0)); ++slot) {
     std::vector<std::uint32_t> of_members;

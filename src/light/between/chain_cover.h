@@ -20,8 +20,9 @@ struct ChainMember {
 /// of one kind. What is drawn does not depend on the order in which the members come.
 class ChainCover {
 public:
-  /// Slots must be the same.
-  explicit ChainCover(std::vector<ChainMember> members);
+  /// Slots must be the same. Throws Failure (Interrupted) once `cancel`, which may be null, became
+  /// true.
+  ChainCover(std::vector<ChainMember> members, const std::atomic<bool> *cancel);
 
   [[nodiscard]] std::size_t members() const { return members_.size(); }
   [[nodiscard]] const Scene &sides(std::size_t member) const { return *members_[member].sides; }

@@ -99,6 +99,11 @@ struct ChainStore::Climb {
   std::vector<double> narrow_i, narrow_squares; ///< per pose: of light between narrow lobes
 };
 
+bool draws_reserve(std::size_t poses_in_all) {
+  constexpr std::size_t few = 24; // docs/theory/bounces.md
+  return poses_in_all == 0 || poses_in_all > few;
+}
+
 ChainStore::ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene &scene,
                        std::shared_ptr<const ChainSurfaces> surfaces)
     : drawing_(std::move(drawing)),
@@ -210,9 +215,10 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
   Answer out;
   out.light.resize(poses.size());
   out.is_enough.assign(poses.size(), 1);
-  const bool has_reserve =
+  const bool asks_reserve =
       surfaces_->are_fast() && static_cast<double>(options.max_points) >= all_weights;
-  if (has_reserve && surfaces_->are_narrow())
+  const bool has_reserve = asks_reserve && draws_reserve(options.poses_in_all);
+  if (asks_reserve && surfaces_->are_narrow())
     out.is_enough.assign(poses.size(), 0);
   else
     climb(poses, direct_i, options, out, threads, cancel);

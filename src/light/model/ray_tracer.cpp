@@ -17,6 +17,7 @@ IntegrationOptions integration_of(const LightOptions &options, std::vector<doubl
   out.source = options.source;
   out.bounces = options.bounces;
   out.between = options.between;
+  out.poses_in_all = options.poses_in_all;
   out.floor_i = std::move(floor_i);
   if (options.max_points > 0)
     out.max_points = options.max_points;

@@ -145,8 +145,8 @@ private:
       std::vector<ChainMember> members{{&scene, own_surfaces(cancel)}};
       members.insert(members.end(), others.begin(), others.end());
       drawing = std::make_shared<const ChainDrawing>(ground.scene, ground.occluder,
-                                                     ChainCover(std::move(members)), key.first,
-                                                     key.second, cancel);
+                                                     ChainCover(std::move(members), cancel),
+                                                     key.first, key.second, cancel);
     }
     return drawing;
   }

@@ -152,6 +152,33 @@ TEST(Chains, AReserveServesNarrowLobes) {
   }
 }
 
+// A million chains take as long as paths of a few dozen poses: of a job of few, whoever asks for
+// how many of them at a time, paths draw all.
+TEST(Chains, NoReserveIsDrawnForAHandfulOfPoses) {
+  const Scene scene =
+      scene_of(three_plates(), NormalMode::Flat, {rough("paper_au", 0.12), rough("paper_al", 0.1)});
+  const std::vector<Pose> poses{into_corner(1), into_corner(2)};
+  IntegrationOptions chains = by_chains(3, 0.02), paths = chains;
+  chains.max_points = paths.max_points = 1u << 18;
+  chains.poses_in_all = 20;
+  paths.between = BetweenMethod::Paths;
+  using Clock = std::chrono::steady_clock;
+  const Integrator integrator(scene);
+  const auto begin = Clock::now();
+  const auto few = integrator.evaluate(poses, chains, 1);
+  const auto by_few = Clock::now() - begin;
+  const auto drawn = integrator.evaluate(poses, paths, 1);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    EXPECT_EQ(few[k].bands[1].stokes.i, drawn[k].bands[1].stokes.i);
+    EXPECT_EQ(few[k].bands[0].half_width.v, drawn[k].bands[0].half_width.v);
+  }
+  chains.poses_in_all = 100;
+  const auto again = Clock::now();
+  const auto many = integrator.evaluate(poses, chains, 1);
+  EXPECT_NE(many[0].bands[1].stokes.i, drawn[0].bands[1].stokes.i);
+  EXPECT_LT(by_few, (Clock::now() - again) / 2);
+}
+
 /// A dielectric at 425 nm that grows metallic: light of two surfaces 20 times as bright at 650 nm.
 Material reddening(double alpha) {
   Material out = rough("paper_au", alpha);
