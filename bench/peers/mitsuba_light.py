@@ -13,6 +13,15 @@ across the scattering plane, as umov has them. Mitsuba's V has the opposite sign
 import numpy as np
 
 
+def mean_fresnel(n):
+    """Of unpolarized light on a dielectric, over the hemisphere by the cosine."""
+    x, w = np.polynomial.legendre.leggauss(200)
+    cosine, w = (x + 1) / 2, w / 2
+    inside = np.sqrt(1 - (1 - cosine**2) / n**2)
+    s, p = (cosine - n * inside) / (cosine + n * inside), (n * cosine - inside) / (n * cosine + inside)
+    return float(np.sum(w * cosine * (s**2 + p**2)))
+
+
 class MitsubaScene:
     def __init__(self, mesh_groups, materials, wavelengths_nm):
         """mesh_groups: {name: (vertices, triangles)}; materials: {name: {"alpha", "n", "k"}} with n and k
@@ -56,9 +65,10 @@ class MitsubaScene:
                 "values": ", ".join(f"{v:.9g}" for v in values)}
 
     def _bsdf(self, material):
-        if "body" in material:
+        if "body" in material:  # whose light is not thrown back from inside there: docs/theory/lobes.md, Eq. 8 has 1/(1 - Fbar)
+            body = material["body"] / (1 - mean_fresnel(material["n"]))
             return {"type": "twosided", "bsdf": {"type": "pplastic", "distribution": "ggx", "alpha": material["alpha"],
-                                                 "int_ior": material["n"], "diffuse_reflectance": self._spectrum([material["body"]])}}
+                                                 "int_ior": material["n"], "diffuse_reflectance": self._spectrum([body])}}
         conductor = {"type": "roughconductor", "distribution": "ggx", "alpha": material["alpha"],
                      "eta": self._spectrum(material["n"]), "k": self._spectrum(material["k"])}
         return {"type": "twosided", "bsdf": conductor}
