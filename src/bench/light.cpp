@@ -192,7 +192,9 @@ private:
       StokesTable table;
       const auto seconds = [&] {
         const double begin = now_s();
-        (void)model_->evaluate(poses, {}, table, {});
+        LightTask task;
+        task.threads = one.threads;
+        (void)model_->evaluate(poses, {}, table, task);
         return now_s() - begin;
       };
       const double with_masks = seconds();

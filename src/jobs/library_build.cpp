@@ -27,7 +27,7 @@ struct Making {
   double error = 0;
   std::vector<float> sums;
   const char *state = "made";
-  std::string no_sums; ///< why a material has light alone; empty: it does not
+  std::string no_sums; ///< why there is light alone; empty: there are sums
   std::string device;  ///< as LightModel::device; who lit it in the end is in `text`
 };
 
@@ -330,9 +330,11 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
     out.text.bands.push_back(band.name);
   StokesTable light;
   bool is_lit = false;
-  const bool has_sums = own.model().joints().empty() && own.model().scene().grid.is_plain() &&
-                        own.options().bounces <= 1;
-  if (has_sums) {
+  out.no_sums = !own.model().joints().empty()          ? "parts that turn have no sums"
+                : !own.model().scene().grid.is_plain() ? "bands with a curve have no sums"
+                : own.options().bounces > 1            ? "light between surfaces has no sums"
+                                                       : "";
+  if (out.no_sums.empty()) {
     UMOV_ASSIGN(sums, SummedLight::of(own.model().scene(), options_, own.options().accuracy,
                                       monitor_.cancel));
     UMOV_ASSIGN(recoloured, colour(sums, own, job_by, file, out, light));

@@ -14,26 +14,33 @@ namespace {
 constexpr double least = 1e-4;
 /// Light below this part of the mean at its phase angle counts as that much.
 constexpr double dim_part = 0.1;
-/// The largest of so few says little of one in twenty: half as much again is said (tried on
-/// cylinders and Agena: 60 poses at each of ten phase angles are covered to .85 to 1).
+/// The largest of so few says little of one in twenty: half as much again is said.
 constexpr std::size_t poses_per_node = 12;
 constexpr double margin = 1.5;
-/// Where poses are looked at [deg]. The first stands for all below, spread from 30 deg on: there it
+/// Where poses are looked at. The first stands for all below, spread from 30 deg on: there it
 /// hardly depends on the phase angle (engine.md). Between two the error is taken as straight, which
 /// is more than it is: it grows as one over the width of the strip that is lit and seen.
-constexpr double phases_deg[] = {110, 130, 145, 155, 163, 169, 174, 177, 179};
+constexpr double phases_deg[] = {80, 110, 130, 145, 155, 163, 169, 174, 177, 179};
 constexpr double first_from_deg = 30;
 
-std::vector<Pose> poses_to_look_at() {
+std::vector<Pose> poses_about(std::size_t node) {
   constexpr std::uint64_t seed = 0;
   std::vector<Pose> out;
-  for (const double phase : phases_deg)
-    for (std::size_t k = 0; k < poses_per_node; ++k) {
-      const double from = out.size() < poses_per_node ? first_from_deg : phase;
-      const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(poses_per_node);
-      out.push_back(random_pose(seed, out.size(), Angle::degrees(from + part * (phase - from))));
-      out.back().sun_radius_rad = sun_radius_at_1au_rad;
-    }
+  for (std::size_t k = 0; k < poses_per_node; ++k) {
+    const double from = node == 0 ? first_from_deg : phases_deg[node];
+    const double part = (static_cast<double>(k) + 0.5) / static_cast<double>(poses_per_node);
+    out.push_back(random_pose(seed, node * poses_per_node + k,
+                              Angle::degrees(from + part * (phases_deg[node] - from))));
+    out.back().sun_radius_rad = sun_radius_at_1au_rad;
+  }
+  return out;
+}
+
+/// The first node above a phase angle; as many as there are nodes: none.
+std::size_t node_above(double phase_rad) {
+  std::size_t out = 0;
+  while (out < std::size(phases_deg) && phases_deg[out] * pi / 180 <= phase_rad)
+    ++out;
   return out;
 }
 
@@ -98,11 +105,10 @@ Looked look_at(const Scene &scene, const Engine &unhidden, const std::vector<Pos
   return out;
 }
 
-/// What part of the light is missed at most, of the poses from `first` on, where light counts as
-/// `dim_i` [per band] at least.
-double most_missed(const Looked &looked, std::size_t first, const std::vector<double> &dim_i) {
+/// What part of the light is missed at most, where light counts as `dim_i` [per band] at least.
+double most_missed(const Looked &looked, const std::vector<double> &dim_i) {
   double most = least;
-  for (std::size_t k = first; k < first + poses_per_node; ++k)
+  for (std::size_t k = 0; k < poses_per_node; ++k)
     for (std::size_t n = 0; n < looked.nodes.size(); ++n) {
       const std::size_t band = looked.nodes[n];
       const double refers_to = std::max(looked.fast.i[k * looked.fast.bands + band], dim_i[band]);
@@ -113,57 +119,91 @@ double most_missed(const Looked &looked, std::size_t first, const std::vector<do
   return most;
 }
 
-} // namespace
-
-CurvedErrors CurvedErrors::measure(const Scene &scene, const Engine &unhidden, unsigned threads,
-                                   const std::atomic<bool> *cancel) {
-  CurvedErrors out;
-  if (scene.normals != NormalMode::Smooth)
-    return out;
-  const std::vector<Pose> poses = poses_to_look_at();
-  const Looked looked = look_at(scene, unhidden, poses, threads, cancel);
-  const std::size_t bands = looked.fast.bands;
-  for (std::size_t first = 0; first < poses.size(); first += poses_per_node) {
-    const double phase_deg = phases_deg[first / poses_per_node];
-    Node node{phase_deg * pi / 180, 0, 0, std::vector<double>(bands, 0)};
-    node.of_own = most_missed(looked, first, node.dim_i);
-    for (std::size_t k = first; k < first + poses_per_node; ++k)
-      for (std::size_t b = 0; b < bands; ++b)
-        node.dim_i[b] += dim_part / poses_per_node * looked.fast.i[k * bands + b];
-    node.of_lit = most_missed(looked, first, node.dim_i);
-    out.nodes_.push_back(std::move(node));
-  }
-  out.nodes_.push_back({pi, 1, 1, out.nodes_.back().dim_i}); // nothing is known in line
-  return out;
+bool has_curves(const Scene &scene, const std::atomic<bool> *cancel) {
+  return scene.normals == NormalMode::Smooth &&
+         std::ranges::any_of(make_elements(scene, visible_sides(scene.mesh, cancel), cancel).list,
+                             [](const Element &e) { return !e.is_flat; });
 }
 
-double CurvedErrors::typical() const { return nodes_.empty() ? least : nodes_.front().of_lit; }
+} // namespace
+
+CurvedErrors::CurvedErrors(const Scene &scene, const Engine &unhidden, unsigned threads,
+                           const std::atomic<bool> *cancel)
+    : scene_(scene), is_flat_(!has_curves(scene, cancel)) {
+  static_assert(std::size(phases_deg) == node_count);
+  if (!is_flat_)
+    learn(0, unhidden, threads, cancel);
+}
+
+void CurvedErrors::learn(std::size_t node, const Engine &unhidden, unsigned threads,
+                         const std::atomic<bool> *cancel) const {
+  const Looked looked = look_at(scene_, unhidden, poses_about(node), threads, cancel);
+  const std::size_t bands = looked.fast.bands;
+  Node &out = nodes_[node];
+  out.dim_i.assign(bands, 0);
+  out.least_i.assign(bands, HUGE_VAL);
+  out.of_own = most_missed(looked, out.dim_i);
+  for (std::size_t at = 0; at < poses_per_node * bands; ++at) {
+    out.dim_i[at % bands] += dim_part / poses_per_node * looked.fast.i[at];
+    if (looked.fast.i[at] > 0)
+      out.least_i[at % bands] = std::min(out.least_i[at % bands], looked.fast.i[at]);
+  }
+  out.of_lit = most_missed(looked, out.dim_i);
+  is_known_[node] = true;
+}
+
+/// The engine is made anew for that: it would take as much memory as the one that is asked.
+void CurvedErrors::learn_for(std::span<const Pose> poses, unsigned threads,
+                             const std::atomic<bool> *cancel) const {
+  std::array<bool, node_count + 1> is_asked{};
+  for (const Pose &pose : poses) {
+    const std::size_t above = node_above(phase_of(pose));
+    is_asked[above] = true;
+    is_asked[above > 0 ? above - 1 : 0] = true;
+  }
+  const auto lacks = [&](std::size_t node) { return is_asked[node] && !is_known_[node]; };
+  std::size_t lacking = 0;
+  for (std::size_t node = 0; node < node_count; ++node)
+    lacking += lacks(node) ? 1 : 0;
+  if (lacking == 0)
+    return;
+  const std::scoped_lock lock(mutex_);
+  const Engine unhidden(scene_, {.visibility = Visibility::None, .threads = 1}, cancel);
+  for (std::size_t node = 0; node < node_count; ++node)
+    if (lacks(node))
+      learn(node, unhidden, threads, cancel);
+}
+
+double CurvedErrors::typical() const { return is_flat_ ? least : nodes_.front().of_lit; }
 
 double CurvedErrors::Node::at(std::size_t band, double i) const {
   const double lit = of_lit * std::max(i, dim_i[band]);
-  return i > 0 ? std::min(lit, of_own * i) : lit;
+  return i > 0 ? std::min(lit, of_own * std::max(i, least_i[band])) : lit;
 }
 
 double CurvedErrors::at(double phase_rad, std::size_t band, double i) const {
-  if (nodes_.empty())
-    return least * i;
-  const auto above = std::find_if(nodes_.begin(), nodes_.end(),
-                                  [&](const Node &node) { return node.phase_rad > phase_rad; });
-  if (above == nodes_.begin())
-    return above->at(band, i);
-  const Node &below = *(above - 1);
-  if (above == nodes_.end())
-    return below.at(band, i);
-  const double part = (phase_rad - below.phase_rad) / (above->phase_rad - below.phase_rad);
-  return (1 - part) * below.at(band, i) + part * above->at(band, i);
+  const std::size_t above = node_above(phase_rad);
+  if (above == 0)
+    return nodes_[0].at(band, i);
+  const Node &below = nodes_[above - 1];
+  const double from = phases_deg[above - 1] * pi / 180,
+               to = above < node_count ? phases_deg[above] * pi / 180 : pi,
+               part = std::min((phase_rad - from) / (to - from), 1.0);
+  // In line with the Sun all is unknown: as much as there is, or is at the last node in the mean.
+  const double next =
+      above < node_count ? nodes_[above].at(band, i) : std::max(i, below.dim_i[band] / dim_part);
+  return (1 - part) * below.at(band, i) + part * next;
 }
 
-void CurvedErrors::add_to(StokesTable &table, std::span<const Pose> poses) const {
+void CurvedErrors::add_to(StokesTable &table, std::span<const Pose> poses, unsigned threads,
+                          const std::atomic<bool> *cancel) const {
+  if (!is_flat_)
+    learn_for(poses, threads, cancel);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double phase_rad = phase_of(poses[k]);
     for (std::size_t b = 0; b < table.bands; ++b) {
       const std::size_t at_band = k * table.bands + b;
-      const double more = at(phase_rad, b, table.i[at_band]);
+      const double i = table.i[at_band], more = is_flat_ ? least * i : at(phase_rad, b, i);
       for (std::vector<double> *error : {&table.i_err, &table.q_err, &table.u_err})
         (*error)[at_band] += more;
     }

@@ -1,13 +1,11 @@
 // The one place that decides how a scene is lit.
 
 #include "light/model/models.h"
-#include "light/reference/elements_lit.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fmt/format.h>
-#include <functional>
-#include <umov/core/parallel.h>
 #include <umov/light/poses.h>
 #include <umov/shape/topology.h>
 
@@ -141,6 +139,7 @@ namespace {
 Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> joints,
                                          const LightOptions &options,
                                          const std::atomic<bool> *cancel, ChainFamily family) {
+  const auto begin = std::chrono::steady_clock::now();
   UMOV_TRY(check(options));
   ChainSharing chains;
   if (options.bounces > 1 && joints.empty() && options.between == BetweenMethod::Chains) {
@@ -166,8 +165,7 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
   if (has_rays)
     return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i, cancel,
                                        std::move(chains));
-  CurvedErrors missed = CurvedErrors::measure(scene, *unhidden, options.threads, cancel);
-  return MasksLight::make(scene, std::move(joints), options, typical_i, std::move(missed), cancel,
+  return MasksLight::make(scene, std::move(joints), options, typical_i, *unhidden, begin, cancel,
                           std::move(chains));
 }
 

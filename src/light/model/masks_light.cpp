@@ -1,5 +1,6 @@
 #include "light/fast/cards.h"
 #include "light/model/models.h"
+#include "light/unless_stopped.h"
 
 #include <algorithm>
 #include <chrono>
@@ -30,22 +31,25 @@ std::string in_words(const LightFacts &facts, const MaskQuality &masks) {
 } // namespace
 
 MasksLight::MasksLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
-                       const std::vector<double> &typical_i, CurvedErrors curved)
+                       const std::vector<double> &typical_i, const Engine &unhidden,
+                       const std::atomic<bool> *cancel)
     : LightModel(of, std::move(turning)), options_(options), floor_i_(floor_of(options, typical_i)),
-      curved_(std::move(curved)), material_of_(material_of_slots(scene(), materials())) {}
+      curved_(scene(), unhidden, options.threads, cancel),
+      material_of_(material_of_slots(scene(), materials())) {}
 
 Result<std::unique_ptr<LightModel>>
 MasksLight::make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-                 const std::vector<double> &typical_i, CurvedErrors curved,
-                 const std::atomic<bool> *cancel, ChainSharing chains) {
+                 const std::vector<double> &typical_i, const Engine &unhidden,
+                 std::chrono::steady_clock::time_point begin, const std::atomic<bool> *cancel,
+                 ChainSharing chains) {
   std::unique_ptr<MasksLight> out(
-      new MasksLight(scene, std::move(joints), options, typical_i, std::move(curved)));
-  UMOV_TRY(out->prepare(cancel, std::move(chains)));
+      new MasksLight(scene, std::move(joints), options, typical_i, unhidden, cancel));
+  UMOV_TRY(out->prepare(begin, cancel, std::move(chains)));
   return out;
 }
 
-Result<void> MasksLight::prepare(const std::atomic<bool> *cancel, ChainSharing chains) {
-  const auto start = std::chrono::steady_clock::now();
+Result<void> MasksLight::prepare(std::chrono::steady_clock::time_point begin,
+                                 const std::atomic<bool> *cancel, ChainSharing chains) {
   const bool is_auto = options_.method == LightMethod::Auto;
   facts_.floor_i = of_bands(floor_i_);
   EngineOptions with;
@@ -87,7 +91,7 @@ Result<void> MasksLight::prepare(const std::atomic<bool> *cancel, ChainSharing c
     rays.max_points = most_points::beside_masks;
   if (is_auto)
     direct_.emplace(scene(), joints(), rays, materials());
-  facts_.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  facts_.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return {};
 }
 
@@ -162,7 +166,12 @@ bool MasksLight::light(std::span<const Pose> poses, std::span<const double> angl
                                : turning_->evaluate(poses, angles_rad, out, task, material_of_);
   if (!is_done)
     return false;
-  curved_.add_to(out, poses);
+  const auto add_curved = [&] {
+    curved_.add_to(out, poses, task.threads, task.cancel);
+    return true;
+  };
+  if (!unless_stopped(task.cancel, add_curved))
+    return false;
   if (direct_) {
     const std::vector<std::size_t> left = inaccurate(out);
     if (!left.empty() && !direct_->light(poses, angles_rad, left, out, task))

@@ -4,6 +4,7 @@
 #include "light/model/curved_errors.h"
 #include "light/model/ray_tracer.h"
 
+#include <chrono>
 #include <umov/light/articulated_engine.h>
 #include <umov/light/engine.h>
 
@@ -34,7 +35,8 @@ class MasksLight final : public LightModel {
 public:
   static Result<std::unique_ptr<LightModel>>
   make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-       const std::vector<double> &typical_i, CurvedErrors curved, const std::atomic<bool> *cancel,
+       const std::vector<double> &typical_i, const Engine &unhidden,
+       std::chrono::steady_clock::time_point begin, const std::atomic<bool> *cancel,
        ChainSharing chains = {});
   [[nodiscard]] std::shared_ptr<const Integrator>
   chain_drawer(const std::atomic<bool> *cancel) const override {
@@ -51,8 +53,10 @@ public:
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-             const std::vector<double> &typical_i, CurvedErrors curved);
-  Result<void> prepare(const std::atomic<bool> *cancel, ChainSharing chains);
+             const std::vector<double> &typical_i, const Engine &unhidden,
+             const std::atomic<bool> *cancel);
+  Result<void> prepare(std::chrono::steady_clock::time_point begin, const std::atomic<bool> *cancel,
+                       ChainSharing chains);
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
   Result<void> take_device();

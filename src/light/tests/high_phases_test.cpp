@@ -8,7 +8,7 @@
 namespace umov::cases {
 namespace {
 
-constexpr double phases_deg[] = {120, 140, 152, 160, 166, 172, 175, 178};
+constexpr double phases_deg[] = {60, 100, 120, 140, 152, 160, 166, 172, 175, 178, 179.3, 179.7};
 constexpr std::size_t per_phase = 25;
 
 std::vector<Pose> poses_at_phases() {
@@ -56,7 +56,7 @@ TEST(HighPhases, ASphereIsWithinItsHalfWidths) {
     known.push_back(2.0 / 3 * (std::sin(a) + (pi - a) * std::cos(a)) / pi);
   }
   EXPECT_GE(covered(fast, known, 0, poses.size()), 0.9);
-  for (std::size_t at = 0; at < 5 * per_phase; at += per_phase) // and they are no more than is lost
+  for (std::size_t at = 0; at < 7 * per_phase; at += per_phase) // and they are no more than is lost
     EXPECT_LT(fast.at(at, 1).half_width.i, 0.1 * known[at]);
 }
 
@@ -76,24 +76,26 @@ TEST(HighPhases, ATubeIsWithinItsHalfWidthsAtEachPhaseAngle) {
     const StokesTable fast = lit(tube, poses, {.method = LightMethod::Masks});
     EXPECT_GE(covered(fast, known, 0, poses.size()), 0.88) << alpha;
     for (std::size_t p = 0; p < std::size(phases_deg); ++p)
-      EXPECT_GE(covered(fast, known, p * per_phase, per_phase), 0.7)
+      EXPECT_GE(covered(fast, known, p * per_phase, per_phase), 0.76)
           << alpha << " " << phases_deg[p];
   }
 }
 
-// What masks miss above the accuracy that was asked for is lit by rays: no pose is off by more.
+// What masks miss above the accuracy that was asked for is lit by rays: of many poses those that
+// miss it by less than half are left, and a half-width is exceeded by 5 of 100, rarely doubled.
 TEST(HighPhases, TheDefaultMeetsItsAccuracyOnCurvedParts) {
   const std::vector<Pose> all = poses_at_phases();
-  const std::vector<Pose> poses(all.begin() + 5 * per_phase, all.end());
+  const std::vector<Pose> poses(all.begin() + 7 * per_phase, all.end());
   const Scene agena = scene_of(make_agena(), NormalMode::Smooth, {polished(0.1), polished(0.3)});
-  const StokesTable fast = lit(agena, poses, {});
+  const LightOptions many = for_many_poses({});
+  const StokesTable fast = lit(agena, poses, many);
   const StokesTable rays = lit(agena, poses, {.method = LightMethod::Rays, .accuracy = 5e-4});
-  const double floor = make_light(agena, {}, {}).value()->facts().floor_i[1];
+  const double floor = make_light(agena, {}, many).value()->facts().floor_i[1];
   std::size_t inside = 0;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double apart = std::abs(fast.at(k, 1).stokes.i - rays.at(k, 1).stokes.i);
     inside += apart <= fast.at(k, 1).half_width.i + rays.at(k, 1).half_width.i ? 1 : 0;
-    EXPECT_LE(apart, 2 * 0.05 * std::max(rays.at(k, 1).stokes.i, floor)) << k;
+    EXPECT_LE(apart, 2 * many.accuracy * std::max(rays.at(k, 1).stokes.i, floor)) << k;
   }
   EXPECT_GE(inside, poses.size() * 88 / 100);
 }
