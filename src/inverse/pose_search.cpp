@@ -238,17 +238,16 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
   auto &[modes, samples, is_settled] = peaks;
   constexpr double much = 0.01; // a fifth of what a set of 95 % may leave out
   if (judged.of > 0 && (beside > much || !is_described(modes, samples))) {
-    Samples all = inverse::sample_all(quick, model, likelihood, options);
+    Samples all = inverse::sample_all(quick, model, likelihood, modes, options);
     if (all.draws.empty())
       return tl::unexpected(stopped());
-    // Either can miss probability, hardly find too much: peaks that particles from afar did not
-    // come upon lack in their evidence.
+    // Either can miss probability, hardly find too much: peaks that particles lost on their way
+    // lack in their evidence.
     constexpr double missed = 1; // e-fold
     out.is_broad = all.log_evidence > samples.log_evidence - missed;
-    if (out.is_broad) {
-      inverse::add_lost(samples, all);
+    if (out.is_broad)
       samples = std::move(all);
-    } else if (beside > much)
+    else if (beside > much)
       is_settled = false;
   }
   out.is_settled = is_settled || out.is_broad;

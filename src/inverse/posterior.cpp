@@ -180,6 +180,15 @@ std::vector<Comparison> compare_draws(const CurveModel &model, const CurveLikeli
   return out;
 }
 
+/// A draw of Student's t about a mode.
+Turning draw_from(const Proposal &p, double span_s, std::uint64_t seed, std::uint32_t stream,
+                  std::uint64_t index) {
+  const Eigen::Index n = p.root.rows();
+  const auto z = normal_vector(seed, stream, index, n + static_cast<Eigen::Index>(tail));
+  const double chi = z.tail(static_cast<Eigen::Index>(tail)).squaredNorm();
+  return stepped(p.centre, p.root * z.head(n) * std::sqrt(tail / chi), span_s);
+}
+
 } // namespace
 
 Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
@@ -191,18 +200,13 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
   constexpr double enough = 100; // effective samples
   for (int round = 0; round < least || (round < most && out.effective < enough); ++round) {
     const auto mixture = mixture_of(modes, span);
-    const Eigen::Index n = mixture.front().root.rows();
     std::vector<Turning> drawn;
     for (std::size_t m = 0, k = 0; m < mixture.size(); ++m) {
       const auto count = static_cast<std::size_t>(
           std::ceil(mixture[m].weight * static_cast<double>(options.samples)));
-      for (std::size_t j = 0; j < count; ++j, ++k) {
-        const auto z = normal_vector(options.seed, 0x706f7300u + static_cast<std::uint32_t>(round),
-                                     k, n + static_cast<Eigen::Index>(tail));
-        const double chi = z.tail(static_cast<Eigen::Index>(tail)).squaredNorm();
-        drawn.push_back(
-            stepped(mixture[m].centre, mixture[m].root * z.head(n) * std::sqrt(tail / chi), span));
-      }
+      for (std::size_t j = 0; j < count; ++j, ++k)
+        drawn.push_back(draw_from(mixture[m], span, options.seed,
+                                  0x706f7300u + static_cast<std::uint32_t>(round), k));
     }
     const auto compared = compare_draws(model, likelihood, drawn, options.threads);
     if (compared.empty())
@@ -222,6 +226,44 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
     update(modes, mixture, out.draws, log_weight, span);
   }
   return out;
+}
+
+struct AroundModes::Tails {
+  std::vector<Proposal> mixture;
+  std::vector<std::size_t> counts;
+};
+
+namespace {
+constexpr double no_span = 1; // [s]: of attitudes that stay as they are
+} // namespace
+
+AroundModes::AroundModes(const std::vector<PoseMode> &modes, std::size_t count) {
+  auto tails = std::make_unique<Tails>();
+  if (!modes.empty())
+    tails->mixture = mixture_of(modes, no_span);
+  for (const Proposal &p : tails->mixture) {
+    tails->counts.push_back(
+        static_cast<std::size_t>(std::ceil(p.weight * static_cast<double>(count))));
+    count_ += tails->counts.back();
+  }
+  for (std::size_t m = 0; m < tails->mixture.size(); ++m) // as many as are drawn
+    tails->mixture[m].weight = static_cast<double>(tails->counts[m]) / static_cast<double>(count_);
+  tails_ = std::move(tails);
+}
+
+AroundModes::~AroundModes() = default;
+
+std::vector<Turning> AroundModes::drawn(std::uint64_t seed, std::uint32_t stream) const {
+  std::vector<Turning> out;
+  for (std::size_t m = 0; m < tails_->mixture.size(); ++m)
+    for (std::size_t j = 0; j < tails_->counts[m]; ++j)
+      out.push_back(draw_from(tails_->mixture[m], no_span, seed, stream, out.size()));
+  return out;
+}
+
+double AroundModes::density(const Turning &at) const {
+  constexpr double all = 8 * pi * pi; // attitudes, in the measure of rotation vectors
+  return tails_->mixture.empty() ? 0 : all * std::exp(log_density(tails_->mixture, at, no_span));
 }
 
 } // namespace umov::inverse

@@ -3,6 +3,7 @@
 
 #include "inverse/turning_fit.h"
 
+#include <memory>
 #include <umov/inverse/pose_search.h>
 
 namespace umov::inverse {
@@ -26,15 +27,32 @@ Eigen::VectorXd normal_vector(std::uint64_t seed, std::uint32_t stream, std::uin
 Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
                      std::vector<PoseMode> &modes, const SearchOptions &options);
 
-/// Sequential Monte Carlo from all attitudes to the posterior (Del Moral, Doucet & Jasra 2006):
-/// for a posterior of any shape that is not much narrower than its first particles lie apart. Two
-/// runs, each from a grid of its own, and of curves of fewer than 40 epochs up to four until the
-/// set of all leaves little of each run outside: what one run lost all of its particles have lost.
-/// They are followed by `quick` light and weighted by that of `last`.
+/// Broad tails around modes, as a density of attitudes to begin with.
+class AroundModes {
+public:
+  /// Of `count` draws, or a few more.
+  AroundModes(const std::vector<PoseMode> &modes, std::size_t count);
+  ~AroundModes();
+  AroundModes(const AroundModes &) = delete;
+  AroundModes &operator=(const AroundModes &) = delete;
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::vector<Turning> drawn(std::uint64_t seed, std::uint32_t stream) const;
+  /// In parts of that in which all attitudes are alike.
+  [[nodiscard]] double density(const Turning &at) const;
+
+private:
+  struct Tails;
+  std::unique_ptr<const Tails> tails_;
+  std::size_t count_ = 0;
+};
+
+/// Sequential Monte Carlo from all attitudes, and more of those around the modes that are known, to
+/// the posterior (Del Moral, Doucet & Jasra 2006): for a posterior of any shape. Two runs, each
+/// from a grid of its own, and of curves of fewer than 40 epochs up to two more where these do not
+/// agree, of many more particles if it is in their evidence: what one run lost all of its particles
+/// have lost. They are followed by `quick` light, and by that of `last` at the end.
 Samples sample_all(const CurveModel &quick, const CurveModel &last,
-                   const CurveLikelihood &likelihood, const SearchOptions &options);
-/// Particles with what they lost of peaks: draws around these that are as likely as the particles'
-/// set but lie out of it count as they do among the peaks' own.
-void add_lost(const Samples &peaks, Samples &particles);
+                   const CurveLikelihood &likelihood, const std::vector<PoseMode> &modes,
+                   const SearchOptions &options);
 
 } // namespace umov::inverse

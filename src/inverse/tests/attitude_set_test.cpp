@@ -66,24 +66,56 @@ TEST(AttitudeSet, HoldsWhatOneOfTwoRunsHasLost) {
   EXPECT_EQ(highest_density(both, {}, std::vector<std::size_t>(both.size(), 0)).growth, 1);
 }
 
-/// Particles that never came to a narrow peak get it from draws around that peak, as heavy as these
-/// say.
-TEST(AttitudeSet, PeaksThatParticlesLostAreAdded) {
-  const Quaternion wide = turned({}, {0.4, -0.9, 0.3}), narrow = turned({}, {-1.4, 0.9, 1.3});
-  Samples particles, peaks;
-  particles.draws = draws(wide, 5 * deg, 400, 0, 1);
-  for (std::size_t k = 0; k < 400; ++k)
-    particles.runs.push_back(k / 200);
-  peaks.draws = draws(narrow, 0.1 * deg, 100, 1000, 1);
-  peaks.log_evidence = particles.log_evidence + std::log(3.0); // three quarters of all
-  add_lost(peaks, particles);
-  double weight = 0;
-  for (const PoseSample &s : particles.draws)
-    weight += angle_between(s.turning.attitude, narrow) < deg ? s.weight : 0;
-  // One in twenty is less likely than the particles' set and stays away.
-  EXPECT_NEAR(weight, 0.75, 0.03);
-  EXPECT_NEAR(particles.log_evidence, std::log(4.0), 0.1);
-  EXPECT_TRUE(is_in(highest_density(particles.draws, {}, particles.runs).balls, narrow));
+/// Draws of one normal in two runs: the set holds what it says. 95 % of a normal are within 2.80
+/// standard deviations (chi-square of three degrees of freedom: Abramowitz & Stegun 1964,
+/// table 26.8). Balls grow until those of either run hold 95 % of the other's draws, and both
+/// together, out to their own radius, hold up to 4 % more.
+TEST(AttitudeSet, HoldsTheShareOfAKnownDensity) {
+  const Quaternion middle = turned({}, {0.4, -0.9, 0.3});
+  const auto two = draws(middle, 2 * deg, 1000, 0, 1);
+  std::vector<std::size_t> runs(1000, 0);
+  std::fill(runs.begin() + 500, runs.end(), 1);
+  const auto set = highest_density(two, {}, runs);
+  const auto fresh = draws(middle, 2 * deg, 5000, 20'000, 1);
+  EXPECT_GT(share_held(set, fresh), 0.94); // 5000 scatter by .3 %
+  EXPECT_LT(share_held(set, fresh), 0.99);
+  double within = 0;
+  for (const PoseSample &s : fresh)
+    within += angle_between(s.turning.attitude, middle) < 2.80 * 2 * deg ? 1 : 0;
+  EXPECT_NEAR(within / 5000, 0.95, 0.01); // the draws are what they are said to be
+}
+
+PoseMode mode_at(Quaternion attitude, double sd, double weight) {
+  PoseMode out;
+  out.turning.attitude = attitude;
+  out.covariance.assign(9, 0);
+  out.covariance[0] = out.covariance[4] = out.covariance[8] = sd * sd;
+  out.weight = weight;
+  return out;
+}
+
+/// The density around modes is one: its mean over all attitudes is 1, and so is the mean of its
+/// inverse over its own draws that lie where it is more than a tenth (the part of all attitudes
+/// that this is).
+TEST(AttitudeSet, TailsAroundModesAreADensity) {
+  const std::vector<PoseMode> modes{mode_at(turned({}, {0.4, -0.9, 0.3}), 12 * deg, 0.7),
+                                    mode_at(turned({}, {-1.4, 0.9, 1.3}), 8 * deg, 0.3)};
+  const AroundModes around(modes, 20'000);
+  constexpr std::size_t count = 200'000;
+  double sum = 0, above = 0;
+  for (const Quaternion &q : attitude_grid(count)) {
+    const double density = around.density({q, {}});
+    sum += density;
+    above += density > 0.1 ? 1 : 0;
+  }
+  EXPECT_NEAR(sum / count, 1, 0.01); // tails beyond half a turn are folded nowhere
+  double drawn = 0;
+  const auto all = around.drawn(3, 1);
+  EXPECT_EQ(all.size(), around.count());
+  for (const Turning &one : all)
+    if (const double density = around.density(one); density > 0.1)
+      drawn += 1 / density;
+  EXPECT_NEAR(drawn / static_cast<double>(all.size()), above / count, 0.02);
 }
 
 } // namespace
