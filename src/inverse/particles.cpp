@@ -349,7 +349,7 @@ private:
         values.push_back(p.quick.minus_2_log - p.start);
       // An island of the posterior begins with the part of all attitudes that it takes, and gains
       // on the others from power to power: at first there are many particles, then few.
-      constexpr std::size_t first = 8;
+      const std::size_t first = options_.needs_set ? 8 : 1; // evidence alone needs no such care
       const std::size_t times = std::max<std::size_t>(first >> level_, 1);
       const double more = more_of(values, 1 - power, crowd_.wanted * static_cast<double>(times));
       power = power + more < 1 ? power + more : 1;
