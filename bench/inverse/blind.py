@@ -4,7 +4,7 @@ the coarser mesh. Prints one line per curve and the summary.
 
 usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--wrong 1] [--only TRIAL] [--umov PATH] [options of umov invert]
        bench/peers/run inverse metals TRIALS --truth mitsuba [--surfaces 3] ...
-OBJECT: agena, hst, box-wing, cubesat, or metals: a box-wing of four rough metals. --truth mitsuba: the data's light is another program's
+OBJECT: agena, hst, box-wing, cubesat, metals (a box-wing of four rough metals), box or grey-box (chamfered_box.py). --truth mitsuba: the data's light is another program's
 (mitsuba_truth.py); before the answers stands how far it is from umov's rays. --surfaces 3: light between surfaces in the data, not in the fit. --spin: the body turns about a random axis; the search is told its period to 1 %.
 --wrong 1: the true object is another one than the one that is fitted: slopes of each material's lobe are 20 % off (normal, ln), reflectances of
 paints 10 %, haze 30 %, lengths along each axis of the mesh 2.5 % (areas 3.5 %); other numbers are parts or multiples of that."""
@@ -19,6 +19,8 @@ import tempfile
 import time
 import tomllib
 
+import chamfered_box
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MATERIALS = {
     "hst": dict(light_shield="film_aluminized", baffle="paint_black", forward_shell="film_aluminized", equipment="film_silvered",
@@ -31,6 +33,8 @@ MATERIALS = {
                     body_pz="mli_kapton", body_mz="aluminium_anodized", panel_px_front="cell_gaas",
                     panel_px_back="paint_black", panel_px_edge="aluminium_anodized"),
     "metals": dict(bus="peer_bus", panels="peer_panels", tank="peer_tank", dish="peer_dish"),
+    "box": chamfered_box.names(False),
+    "grey-box": chamfered_box.names(True),
 }
 MESH = {  # fitted, true
     "hst": (["hst", "--sides", 36], ["hst", "--sides", 60]),
@@ -38,6 +42,8 @@ MESH = {  # fitted, true
     "box-wing": (["box-wing", "--facets", 600], ["box-wing", "--facets", 1500]),
     "cubesat": (["cubesat", "--panels", 1], ["cubesat", "--panels", 1]),
     "metals": (["box-wing", "--facets", 2000], ["box-wing", "--facets", 10000]),
+    "box": (None, None),  # no shape of umov mesh make
+    "grey-box": (None, None),
 }
 SPAN = ("2018-01-21T05:08:00Z", "2018-01-21T05:16:00Z")  # of a pass
 SCENARIO = """umov = 1
@@ -69,11 +75,22 @@ formats = ["csv"]
 """
 
 
+class NoResult(SystemExit):
+    """umov's answer to what nothing can be seen of, as a span without a sunlit pass."""
+
+
 def run(umov, *words, ok=(0,)):
     done = subprocess.run([umov, *map(str, words)], capture_output=True, text=True)
     if done.returncode not in ok:
-        raise SystemExit(f"{words}: {done.returncode}\n{done.stderr[-2000:]}")
+        raise (NoResult if done.returncode == 5 else SystemExit)(f"{words}: {done.returncode}\n{done.stderr[-2000:]}")
     return done.stdout
+
+
+def make_mesh(umov, words, path):
+    if words:
+        run(umov, "mesh", "make", *words, "-o", path, "-q")
+    else:
+        chamfered_box.write_mesh(path)
 
 
 def rows_of(path):
@@ -171,7 +188,7 @@ def main():
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, MESH[o.object]):
         if not mesh.exists():
-            run(o.umov, "mesh", "make", *words, "-o", mesh, "-q")
+            make_mesh(o.umov, words, mesh)
     if o.truth == "mitsuba" and (o.object != "metals" or o.wrong):
         parser.error("--truth mitsuba knows the object metals, and no --wrong")
     o.truth = by_mitsuba(o.umov, meshes[1], o.surfaces) if o.truth == "mitsuba" else None
@@ -247,6 +264,8 @@ def make_curve(o, work, meshes, trial, law, step, rng, span=SPAN):
             text = text.replace(f'method = "{method}"', f'method = "{method}"\nbounces = {o.surfaces}')
         if o.object == "metals":
             text += metals_in_toml()
+        if o.object in ("box", "grey-box"):
+            text = text.replace('normals = "smooth"', 'normals = "flat"') + chamfered_box.materials_in_toml()
         if o.wrong and out == "truth":
             text = other_object(o, trial, text, mesh, work / "wrong.obj")
         (work / name).write_text(text)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Does the 95 % set hold 95 % of the truths? Short arcs, 8 to 15 epochs somewhere in a pass, of random attitudes, whose data are wrong by just what the
 search is told: photons, the floor (its part of I and half of it in q and u, and 1 % of the median I), zero points of 2 %. Light of the truth by rays on the mesh
-that is fitted, so that nothing else is wrong. Prints one line per curve, then the share of sets that hold the truth with its binomial interval (Clopper & Pearson 1934, 95 %).
+that is fitted, so that nothing else is wrong. Prints one line per curve, then the share of sets that hold the truth, of all and of those with and without dark epochs, with its binomial interval (Clopper & Pearson 1934, 95 %).
 
-usage: coverage.py OBJECT CURVES [--snr 100] [--seed 1] [--floor 0.02] [--only CURVE] [--umov PATH] [--work DIR] [options of umov invert]
+usage: coverage.py OBJECT CURVES [--snr 100] [--seed 1] [--floor 0.02] [--first CURVE] [--only CURVE] [--umov PATH] [--work DIR] [options of umov invert]
 OBJECT: as blind.py has them. Materials are taken for right unless the options say otherwise."""
 import argparse
 import itertools
@@ -12,6 +12,7 @@ import pathlib
 import random
 import statistics
 import tempfile
+import typing
 
 import blind
 
@@ -32,12 +33,14 @@ def arc(rng):
 
 
 def observed(rows, snr, floor, rng, path):
-    """A table as an observer has it whose model is wrong by `floor`: S/N is that of the mean I, dark epochs stand with their noise."""
+    """A table as an observer has it whose model is wrong by `floor`: S/N is that of the mean I, dark epochs stand with their noise. Returns the chi-square
+    of the truth with the gains that it was made with (equation 3 of docs/theory/inverse.md)."""
     lit = [r for r in rows if float(r["intensity"]) > 0]
     unit = {r["band"]: 3.1 * float(r["I"]) / float(r["intensity"]) for r in lit}  # of what is dark: of another epoch
     mean = {band: statistics.mean(float(r["intensity"]) for r in rows if r["band"] == band) for band in sorted(unit)}
     median = statistics.median(float(r["intensity"]) for r in rows if r["band"] in unit)
     gain = {band: 1 + ZERO_POINT_SD * rng.gauss(0, 1) for band in mean}
+    chi2 = sum(((g - 1) / ZERO_POINT_SD) ** 2 for g in gain.values())
     out = ["# pol_frame: equatorial", "time_utc,band,flux,flux_err,q,u,q_err,u_err"]
     for r in (r for r in rows if r["band"] in unit):
         true, m, scale = float(r["intensity"]), mean[r["band"]], unit[r["band"]]
@@ -45,13 +48,17 @@ def observed(rows, snr, floor, rng, path):
             scale = 3.1 * float(r["I"]) / true
         sd = math.sqrt((0.8 * true * m + 0.2 * m * m) / snr**2)
         seen = gain[r["band"]] * (true * (1 + floor * rng.gauss(0, 1)) + OF_MEDIAN * median * rng.gauss(0, 1)) + sd * rng.gauss(0, 1)
+        chi2 += (seen - gain[r["band"]] * true) ** 2 / (sd**2 + (floor * seen) ** 2 + (OF_MEDIAN * median) ** 2)
         cells = [r["time_utc"], r["band"], f"{scale * seen:.6e}", f"{scale * sd:.6e}", "", "", "", ""]
         if true > 3 * sd and r["q"]:
             e = math.sqrt(2) * sd / true
             both = math.hypot(e, floor / 2)
-            cells[4:] = [f"{float(r['q']) + both * rng.gauss(0, 1):.6f}", f"{float(r['u']) + both * rng.gauss(0, 1):.6f}", f"{e:.6f}", f"{e:.6f}"]
+            off = [both * rng.gauss(0, 1) for _ in "qu"]
+            chi2 += sum(x * x for x in off) / both**2
+            cells[4:] = [f"{float(r[k]) + x:.6f}" for k, x in zip("qu", off)] + [f"{e:.6f}"] * 2
         out.append(",".join(cells))
     path.write_text("\n".join(out) + "\n")
+    return chi2
 
 
 def tail(n, k, p):
@@ -79,6 +86,7 @@ def main():
     parser.add_argument("--snr", type=float, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--floor", type=float, default=0.02, help="error of the model, put in and told")
+    parser.add_argument("--first", type=int, default=0, help="curve of the seed to begin with")
     parser.add_argument("--only", type=int, help="of the curves, this one alone")
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
@@ -87,27 +95,51 @@ def main():
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     mesh = work / f"{o.object}.obj"
-    blind.run(o.umov, "mesh", "make", *blind.MESH[o.object][0], "-o", mesh, "-q")
-    held, asked, shares = 0, 0, []
-    for curve in itertools.count() if o.only is None else [o.only]:
-        if asked == o.curves:
+    blind.make_mesh(o.umov, blind.MESH[o.object][0], mesh)
+    answers = []
+    for curve in itertools.count(o.first) if o.only is None else [o.only]:
+        if len(answers) == o.curves:
             break
         rng = random.Random(f"{o.seed} {o.object} {curve}")
         truth, (begin, end, step) = blind.random_attitude(rng), arc(rng)
-        rows = blind.make_curve(o, work, [mesh, mesh], curve, blind.inertial(truth), step, rng, (clock(begin), clock(end)))
+        try:
+            rows = blind.make_curve(o, work, [mesh, mesh], curve, blind.inertial(truth), step, rng, (clock(begin), clock(end)))
+        except blind.NoResult:
+            continue  # after the pass
         if not any(float(row["intensity"]) > 0 for row in rows):
             continue  # no light at all: nothing was seen
         observed(rows, o.snr, o.floor, rng, work / "obs.csv")
-        verdict, seconds = blind.asked(o, work, "pose")
-        same = blind.twins(truth, verdict["symmetries"])
-        best = min((blind.apart(t, verdict["modes"][0]["q"]) for t in same), default=180) if verdict["modes"] else 180
-        inside = blind.in_set(work / "answer/set95.ecsv", same)
-        asked, held = asked + 1, held + inside
-        shares.append(verdict["share_of_so3"])
-        print(f"{o.object} {curve}: {'in' if inside else 'OUT'}, best {best:.2f} deg off, {len(verdict['modes'])} modes, set {100 * shares[-1]:.2g} %, "
-              f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, floor {verdict['floor']:.3f}, {verdict['verdict']}, {len(rows) // 3} epochs, {seconds:.1f} s", flush=True)
-    low, high = interval(asked, held)
-    print(f"{o.object}, S/N {o.snr:g}, {asked} curves of seed {o.seed}: held {held} = {held / asked:.3f} ({low:.3f} to {high:.3f}); median set {100 * statistics.median(shares):.2g} % of all attitudes")
+        answers.append(judged(o, work, f"{o.object} {curve}", truth, rows))
+    for kind, some in kinds(answers):
+        low, high = interval(len(some), sum(a.is_held for a in some))
+        print(f"{o.object}, S/N {o.snr:g}, seed {o.seed}, {kind}: held {sum(a.is_held for a in some)} of {len(some)} ({low:.3f} to {high:.3f}); "
+              f"median set {100 * statistics.median(a.share for a in some):.2g} % of all attitudes, {statistics.median(a.seconds for a in some):.1f} s")
+
+
+class Answer(typing.NamedTuple):
+    is_held: bool
+    share: float  # of all attitudes that the set takes
+    dark: int  # epochs without light
+    seconds: float
+
+
+def judged(o, work, name, truth, rows):
+    verdict, seconds = blind.asked(o, work, "pose")
+    same = blind.twins(truth, verdict["symmetries"])
+    best = min((blind.apart(t, verdict["modes"][0]["q"]) for t in same), default=180) if verdict["modes"] else 180
+    lit = {row["time_utc"] for row in rows if float(row["intensity"]) > 0}
+    epochs = len({row["time_utc"] for row in rows})
+    out = Answer(blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"], epochs - len(lit), seconds)
+    print(f"{name}: {'in' if out.is_held else 'OUT'}, best {best:.2f} deg off, {len(verdict['modes'])} modes, set {100 * out.share:.2g} %, "
+          f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, floor {verdict['floor']:.3f}, {verdict['verdict']}, {epochs} epochs, {out.dark} dark, {seconds:.1f} s", flush=True)
+    return out
+
+
+def kinds(answers):
+    """All, and those with and without dark epochs, as far as there are some."""
+    for kind, some in (("all", answers), ("none dark", [a for a in answers if not a.dark]), ("some dark", [a for a in answers if a.dark])):
+        if some:
+            yield kind, some
 
 
 if __name__ == "__main__":

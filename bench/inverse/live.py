@@ -121,7 +121,7 @@ def curve(o, work, rng, step=12):
     """obs.csv and fit.toml of an object in a random attitude; that attitude."""
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
-        blind.run(o.umov, "mesh", "make", *words, "-o", mesh, "-q")
+        blind.make_mesh(o.umov, words, mesh)
     while True:
         truth = blind.random_attitude(rng)
         blind.make_curve(o, work, meshes, 0, blind.inertial(truth), step, rng)

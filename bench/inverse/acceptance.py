@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Fixed attitudes of one pass, many trials: errors, modes, sets, misses and times. Data by rays on a finer mesh than the fitted one, in random attitudes; wrong by
+just what the search is told (coverage.py): photons, floor, zero points. Materials are taken for right unless the options say otherwise.
+Prints a line a curve, then the summary.
+
+usage: acceptance.py OBJECT TRIALS [--snr 20] [--seed 1] [--floor 0.005] [--first TRIAL] [--third 0|1|2] [--clouds] [--umov PATH] [--work DIR] [options of umov invert]
+OBJECT: as blind.py has them. --third: 40 epochs in that third of the pass instead of one every 12 s of all of it. --clouds: the air of every epoch lets through
+another part (normal in ln, a third), which is free in the fit.
+missed: the truth itself fits better than the best mode by more than 2 in chi-square (with the gains that the data were made with, so it fits a little better still)."""
+import argparse
+import math
+import pathlib
+import random
+import statistics
+import tempfile
+import typing
+
+import blind
+import coverage
+
+LIT_S = (5 * 3600 + 8 * 60, 5 * 3600 + 14 * 60)  # when the body of the pass of blind.py is seen
+CLOUDS_SD = 0.33
+
+
+class Answer(typing.NamedTuple):
+    best: float  # from the truth [deg]
+    nearest: float
+    modes: int
+    is_held: bool
+    share: float
+    is_missed: bool
+    is_sure: bool
+    seconds: float
+
+
+def behind_clouds(rows, rng):
+    part = {row["time_utc"]: math.exp(CLOUDS_SD * rng.gauss(0, 1)) for row in rows}
+    return [{**row, "I": float(row["I"]) * part[row["time_utc"]], "intensity": float(row["intensity"]) * part[row["time_utc"]]} for row in rows]
+
+
+def span_of(third):
+    if third is None:
+        return blind.SPAN, 12
+    length = (LIT_S[1] - LIT_S[0]) / 3
+    begin = LIT_S[0] + third * length
+    return (coverage.clock(begin), coverage.clock(begin + length - 1)), length / 40
+
+
+def asked(o, work, meshes, trial):
+    rng = random.Random(f"{o.seed} acceptance {o.object} {trial}")
+    truth = blind.random_attitude(rng)
+    span, step = span_of(o.third)
+    rows = blind.make_curve(o, work, meshes, trial, blind.inertial(truth), step, rng, span)
+    if not any(float(row["intensity"]) > 0 for row in rows):
+        return None  # no light at all: nothing was seen
+    chi2 = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, o.floor, rng, work / "obs.csv")
+    verdict, seconds = blind.asked(o, work, "pose", *(["--clouds"] if o.clouds else []))
+    same = blind.twins(truth, verdict["symmetries"])
+    off = [min(blind.apart(t, m["q"]) for t in same) for m in verdict["modes"]]
+    out = Answer(off[0], min(off), len(off), blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"],
+                 not o.clouds and verdict["chi2"] > chi2 + 2, verdict["verdict"] == "determined", seconds)
+    phases = [float(row["phase_angle"]) for row in rows]
+    print(f"{o.object} {trial}: best {out.best:.3f}, nearest {out.nearest:.3f} deg of {out.modes} modes, {'in' if out.is_held else 'OUT'}, set {100 * out.share:.2g} %, "
+          f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, truth's {chi2:.1f}{', MISSED' if out.is_missed else ''}, {verdict['verdict']}, floor {verdict['floor']:.3f}, {len(rows) // 3} epochs, "
+          f"phase {min(phases):.0f}-{max(phases):.0f}, {seconds:.1f} s", flush=True)
+    return out
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("object", choices=blind.MESH)
+    parser.add_argument("trials", type=int)
+    parser.add_argument("--snr", type=float, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--floor", type=float, default=0.005, help="error of the model, put in and told")
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--third", type=int, choices=(0, 1, 2))
+    parser.add_argument("--clouds", action="store_true")
+    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
+    parser.add_argument("--work", type=pathlib.Path)
+    o, rest = parser.parse_known_args()
+    o.rest, o.surfaces, o.wrong, o.truth = [*coverage.KNOWN, "--floor", o.floor, *rest], 1, 0, None
+    work = o.work or pathlib.Path(tempfile.mkdtemp())
+    work.mkdir(parents=True, exist_ok=True)
+    meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
+    for mesh, words in zip(meshes, blind.MESH[o.object]):
+        blind.make_mesh(o.umov, words, mesh)
+    answers = []
+    trial = o.first
+    while len(answers) < o.trials:
+        answer = asked(o, work, meshes, trial)
+        answers += [answer] if answer else []
+        trial += 1
+    tell(o, answers)
+
+
+def tell(o, answers):
+    n = len(answers)
+    held = sum(a.is_held for a in answers)
+    low, high = coverage.interval(n, held)
+    sure = [a for a in answers if a.is_sure]
+    print(f"{o.object}, S/N {o.snr:g}, seed {o.seed}, {n} curves: best < 5 deg {sum(a.best < 5 for a in answers) / n:.2f}, nearest mode < 5 deg {sum(a.nearest < 5 for a in answers) / n:.2f}; "
+          f"median error of the best {statistics.median(a.best for a in answers):.3f} deg, of the nearest {statistics.median(a.nearest for a in answers):.3f}; modes {statistics.median(a.modes for a in answers):g}; "
+          f"held {held} ({low:.3f} to {high:.3f}) in sets of {100 * statistics.median(a.share for a in answers):.2g} %; missed {sum(a.is_missed for a in answers)}; "
+          f"determined {len(sure)}, of these more than 5 deg off {sum(a.best > 5 for a in sure)}; {statistics.median(a.seconds for a in answers):.1f} s")
+
+
+if __name__ == "__main__":
+    main()
