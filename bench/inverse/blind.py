@@ -2,7 +2,7 @@
 """Blind recovery of attitudes and spins: truth by rays on a finer tessellation, noise of photons, `umov invert pose` or `spin` on
 the coarser mesh. Prints one line per curve and the summary.
 
-usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--wrong 1] [--only TRIAL] [--umov PATH] [options of umov invert]
+usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S [--about x|y|z] [--period-open]] [--wrong 1] [--only TRIAL] [--umov PATH] [options of umov invert]
        bench/peers/run inverse metals TRIALS --truth mitsuba [--surfaces 3] ...
 OBJECT: agena, hst, box-wing, cubesat, metals (a box-wing of four rough metals), box or grey-box (chamfered_box.py). --truth mitsuba: the data's light is another program's
 (mitsuba_truth.py); before the answers stands how far it is from umov's rays. --surfaces 3: light between surfaces in the data, not in the fit. --spin: the body turns about a random axis; the search is told its period to 1 %.
@@ -176,6 +176,8 @@ def main():
     parser.add_argument("--snr", type=float, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--spin", type=float)
+    parser.add_argument("--about", choices="xyz", help="with --spin: the body axis that it turns about, told to the search")
+    parser.add_argument("--period-open", action="store_true", help="with --spin: the period is not told")
     parser.add_argument("--wrong", type=float, default=0)
     parser.add_argument("--only", type=int, help="of the trials, this one alone (the others' curves are made, for the same noise)")
     parser.add_argument("--truth", choices=["rays", "mitsuba"], default="rays")
@@ -305,30 +307,49 @@ def spin_axis(q, rate):
     return [c / n for c in v]
 
 
+def turned(q, rate_deg_s, seconds):
+    """An attitude after a constant turn in body axes."""
+    n = math.sqrt(sum(c * c for c in rate_deg_s))
+    half = math.radians(n * seconds) / 2
+    return product(q, [math.cos(half), *(math.sin(half) * c / n for c in rate_deg_s)])
+
+
+def seconds_of(clock):
+    hours, minutes, seconds = clock.rstrip("Z").split("T")[1].split(":")
+    return 3600 * int(hours) + 60 * int(minutes) + float(seconds)
+
+
 def spins(o, work, meshes):
     rng = random.Random(o.seed)
     results = []
     for trial in range(o.trials):
         q, axis = random_attitude(rng), random_attitude(rng)[:3]
+        if o.about:
+            axis = [float(a == o.about) for a in "xyz"]
         n = math.sqrt(sum(c * c for c in axis))
         rate = [360 / o.spin * c / n for c in axis]
         law = f'mode = "tumble", inertia = [1, 1, 1], rate_deg_s = {rate}, start = {{ {inertial(q)} }}'
-        make_curve(o, work, meshes, trial, law, o.spin / 10, rng)
+        rows = make_curve(o, work, meshes, trial, law, o.spin / 10, rng)
         told = o.spin * (1 + rng.uniform(-0.01, 0.01))
         if o.only not in (None, trial):
             continue
-        verdict, seconds = asked(o, work, "spin", "--period", told)
-        mode, period = table_rows(work / "answer/modes.ecsv")[0], table_rows(work / "answer/periods.ecsv")[0]
-        found = spin_axis([float(mode[k]) for k in ("qw", "qx", "qy", "qz")], [float(mode[k]) for k in ("rate_x", "rate_y", "rate_z")])
-        true = spin_axis(q, rate)
-        off = math.degrees(math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(found, true))))))
-        relative = float(period["period_s"]) / o.spin - 1
-        results.append((off, abs(relative), off < 2 and abs(relative) < 0.01, seconds))
-        print(f"{o.object} spin {trial}: axis off {off:.3f} deg, period {relative:+.1e}, alias {period['alias']}, {verdict['verdict']}, "
-              f"chi2/dof {verdict['chi2'] / max(verdict['dof'], 1):.2f}, {seconds:.1f} s", flush=True)
-    print(f"{o.object} spin {o.spin:g} s, SNR {o.snr:g}, {len(results)} curves: found {sum(r[2] for r in results) / len(results):.2f}; "
-          f"median axis {statistics.median(r[0] for r in results):.3f} deg, period {statistics.median(r[1] for r in results):.1e}; "
-          f"{statistics.median(r[3] for r in results):.1f} s")
+        words = [] if o.period_open else ["--period", told]
+        verdict, seconds = asked(o, work, "spin", *words, *(["--axis", o.about] if o.about else []))
+        mode, periods = table_rows(work / "answer/modes.ecsv")[0], [float(row["period_s"]) for row in table_rows(work / "answer/periods.ecsv")]
+        first = [float(mode[k]) for k in ("qw", "qx", "qy", "qz")]
+        found = spin_axis(first, [float(mode[k]) for k in ("rate_x", "rate_y", "rate_z")])
+        off = math.degrees(math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(found, spin_axis(q, rate)))))))
+        relative = periods[0] / o.spin - 1
+        true = turned(q, rate, seconds_of(rows[0]["time_utc"]) - seconds_of(SPAN[0]))
+        attitude = min(apart(t, first) for t in twins(true, verdict["symmetries"]))
+        is_listed = any(abs(p / o.spin - 1) < 0.01 for p in periods)
+        results.append((off, abs(relative), off < 2 and abs(relative) < 0.01, seconds, attitude, verdict["verdict"] == "determined", is_listed))
+        print(f"{o.object} spin {trial}: axis off {off:.3f} deg, period {relative:+.1e} of {len(periods)}{'' if is_listed else ', NOT LISTED'}, attitude off {attitude:.3f} deg, "
+              f"{verdict['verdict']}, chi2/dof {verdict['chi2'] / max(verdict['dof'], 1):.2f}, {len(rows) // 3} epochs, {seconds:.1f} s", flush=True)
+    n = len(results)
+    print(f"{o.object} spin {o.spin:g} s, SNR {o.snr:g}, seed {o.seed}, {n} curves: found {sum(r[2] for r in results) / n:.2f}, period listed {sum(r[6] for r in results) / n:.2f}, "
+          f"determined {sum(r[5] for r in results)}, of these not found {sum(r[5] and not r[2] for r in results)}; median axis {statistics.median(r[0] for r in results):.3f} deg, "
+          f"attitude {statistics.median(r[4] for r in results):.3f} deg, period {statistics.median(r[1] for r in results):.1e}; {statistics.median(r[3] for r in results):.1f} s")
 
 
 def poses(o, work, meshes):

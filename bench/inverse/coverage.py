@@ -3,8 +3,8 @@
 search is told: photons, the floor (its part of I and half of it in q and u, and 1 % of the median I), zero points of 2 %. Light of the truth by rays on the mesh
 that is fitted, so that nothing else is wrong. Prints one line per curve, then the share of sets that hold the truth, of all and of those with and without dark epochs, with its binomial interval (Clopper & Pearson 1934, 95 %).
 
-usage: coverage.py OBJECT CURVES [--snr 100] [--seed 1] [--floor 0.02] [--first CURVE] [--only CURVE] [--umov PATH] [--work DIR] [options of umov invert]
-OBJECT: as blind.py has them. Materials are taken for right unless the options say otherwise."""
+usage: coverage.py OBJECT CURVES [--snr 100] [--seed 1] [--floor 0.02] [--first CURVE] [--only CURVE] [--dark EPOCHS] [--umov PATH] [--work DIR] [options of umov invert]
+OBJECT: as blind.py has them. --dark 2: arcs with two dark epochs or more alone. Materials are taken for right unless the options say otherwise."""
 import argparse
 import itertools
 import math
@@ -88,6 +88,7 @@ def main():
     parser.add_argument("--floor", type=float, default=0.02, help="error of the model, put in and told")
     parser.add_argument("--first", type=int, default=0, help="curve of the seed to begin with")
     parser.add_argument("--only", type=int, help="of the curves, this one alone")
+    parser.add_argument("--dark", type=int, default=0)
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     o, rest = parser.parse_known_args()
@@ -108,6 +109,8 @@ def main():
             continue  # after the pass
         if not any(float(row["intensity"]) > 0 for row in rows):
             continue  # no light at all: nothing was seen
+        if o.only is None and dark_of(rows) < o.dark:
+            continue
         observed(rows, o.snr, o.floor, rng, work / "obs.csv")
         answers.append(judged(o, work, f"{o.object} {curve}", truth, rows))
     for kind, some in kinds(answers):
@@ -123,15 +126,18 @@ class Answer(typing.NamedTuple):
     seconds: float
 
 
+def dark_of(rows):
+    """Epochs without light."""
+    return len({row["time_utc"] for row in rows} - {row["time_utc"] for row in rows if float(row["intensity"]) > 0})
+
+
 def judged(o, work, name, truth, rows):
     verdict, seconds = blind.asked(o, work, "pose")
     same = blind.twins(truth, verdict["symmetries"])
     best = min((blind.apart(t, verdict["modes"][0]["q"]) for t in same), default=180) if verdict["modes"] else 180
-    lit = {row["time_utc"] for row in rows if float(row["intensity"]) > 0}
-    epochs = len({row["time_utc"] for row in rows})
-    out = Answer(blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"], epochs - len(lit), seconds)
+    out = Answer(blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"], dark_of(rows), seconds)
     print(f"{name}: {'in' if out.is_held else 'OUT'}, best {best:.2f} deg off, {len(verdict['modes'])} modes, set {100 * out.share:.2g} %, "
-          f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, floor {verdict['floor']:.3f}, {verdict['verdict']}, {epochs} epochs, {out.dark} dark, {seconds:.1f} s", flush=True)
+          f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, floor {verdict['floor']:.3f}, {verdict['verdict']}, {len({r["time_utc"] for r in rows})} epochs, {out.dark} dark, {seconds:.1f} s", flush=True)
     return out
 
 
