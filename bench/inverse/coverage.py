@@ -135,9 +135,10 @@ def judged(o, work, name, truth, rows):
     verdict, seconds = blind.asked(o, work, "pose")
     same = blind.twins(truth, verdict["symmetries"])
     best = min((blind.apart(t, verdict["modes"][0]["q"]) for t in same), default=180) if verdict["modes"] else 180
+    epochs = len({row["time_utc"] for row in rows})
     out = Answer(blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"], dark_of(rows), seconds)
     print(f"{name}: {'in' if out.is_held else 'OUT'}, best {best:.2f} deg off, {len(verdict['modes'])} modes, set {100 * out.share:.2g} %, "
-          f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, floor {verdict['floor']:.3f}, {verdict['verdict']}, {len({r["time_utc"] for r in rows})} epochs, {out.dark} dark, {seconds:.1f} s", flush=True)
+          f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, floor {verdict['floor']:.3f}, {verdict['verdict']}, {epochs} epochs, {out.dark} dark, {seconds:.1f} s", flush=True)
     return out
 
 

@@ -119,8 +119,8 @@ bool ParticleRun::begin() {
   std::vector<Turning> turnings;
   for (const Quaternion &q : attitude_grid(crowd_.first))
     turnings.push_back({of_run_ == 0 ? q : product(by, q), {}});
-  of_modes_ = static_cast<double>(around_.count()) /
-              static_cast<double>(turnings.size() + around_.count());
+  of_modes_ =
+      static_cast<double>(around_.count()) / static_cast<double>(turnings.size() + around_.count());
   for (const Turning &one : around_.drawn(options_.seed, 0x6d6f6400u + of_run_))
     turnings.push_back(one);
   return light({1, 1, 0}, turnings, draws_);
@@ -156,8 +156,8 @@ bool ParticleRun::take_last_light() {
     draws_[k].last = std::move(lit[k].last);
   const double wanted = static_cast<double>(options_.samples) / 2;
   for (double part = 0;;) {
-    left_ = values_of(
-        draws_, [](const Particle &p) { return p.last.minus_2_log - p.quick.minus_2_log; });
+    left_ = values_of(draws_,
+                      [](const Particle &p) { return p.last.minus_2_log - p.quick.minus_2_log; });
     const double more = more_of(left_, 1 - part, wanted);
     if (more >= 1 - part) {
       for (double &value : left_)
@@ -245,8 +245,8 @@ bool ParticleRun::try_steps(const Density &density, const Round &round, std::siz
   for (std::size_t j = 0; j < tried.size(); ++j) {
     const std::size_t k = first + j * stride;
     const double coin = uniform4(round.seed, round.stream + coins, k)[1];
-    if (!(std::log(coin) < (density.minus_2_log(draws_[k]) - density.minus_2_log(tried[j])) / 2 +
-                               proposals[j].back))
+    if (!(std::log(coin) <
+          (density.minus_2_log(draws_[k]) - density.minus_2_log(tried[j])) / 2 + proposals[j].back))
       continue;
     draws_[k] = std::move(tried[j]);
     has_moved_[k] = 1;
