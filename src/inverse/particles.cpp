@@ -34,9 +34,11 @@ double different(std::vector<PoseSample> draws) {
 
 /// The fewer epochs, the quicker particles are lit, and the more places are alike.
 Crowd crowd_of(const ObservedCurve &curve, const SearchOptions &options, bool is_large) {
-  constexpr std::size_t first = 20'000, lit = 480'000, lit_large = 1'000'000;
-  constexpr std::size_t wide = 80, short_epochs = 20, most = 10;
-  constexpr std::size_t most_of = 20; // times a grid that was told to be small
+  constexpr std::size_t first = 20'000;                       // attitudes, at least
+  constexpr std::size_t lit = 480'000, lit_large = 1'000'000; // attitudes times epochs
+  constexpr std::size_t short_epochs = 20;                    // of a curve that leaves much alike
+  constexpr std::size_t wide = 80, most = 10; // a large one: samples times 80 over epochs, or ten
+  constexpr std::size_t most_of = 20;         // times a grid that was told to be small
   const std::size_t epochs = std::max<std::size_t>(curve.epochs.size(), 1);
   Crowd out;
   if (is_large) {
