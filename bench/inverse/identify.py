@@ -59,12 +59,15 @@ class Maker:
         return path
 
     def curve(self, number, trial):
-        """obs.csv of an object in a random attitude."""
+        """obs.csv of an object in a random attitude in which it is lit more often than not."""
         rng = random.Random(f"{self.o.seed} curve {number} {trial}")
         mesh, materials = self.object(number)
-        (self.work / "true.toml").write_text(self.scenario("true", "rays", blind.random_attitude(rng), materials, mesh))
-        blind.run(self.o.umov, "run", self.work / "true.toml", "-o", self.work / "truth", "--force", "-q")
-        blind.observed(blind.rows_of(self.work / "truth/lightcurve.csv"), self.o.snr, rng, self.work / "obs.csv")
+        rows = []
+        while not rows or not any(statistics.median(float(r["intensity"]) for r in rows if r["band"] == band) > 0 for band in {r["band"] for r in rows}):
+            (self.work / "true.toml").write_text(self.scenario("true", "rays", blind.random_attitude(rng), materials, mesh))
+            blind.run(self.o.umov, "run", self.work / "true.toml", "-o", self.work / "truth", "--force", "-q")
+            rows = blind.rows_of(self.work / "truth/lightcurve.csv")
+        blind.observed(rows, self.o.snr, rng, self.work / "obs.csv")
 
 
 def asked(o, work, library, *words):

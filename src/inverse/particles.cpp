@@ -70,12 +70,16 @@ Samples pooled(const std::vector<Samples> &runs, const std::vector<double> &foll
   return out;
 }
 
-/// Their evidences are within a factor of 1.6.
-bool are_alike(const std::vector<Samples> &runs) {
-  constexpr double alike = 0.5;
-  const auto [least, most] = std::ranges::minmax(runs, {}, &Samples::log_evidence);
-  return most.log_evidence - least.log_evidence < alike;
+/// The largest less the least of their ln evidences.
+double apart(const std::vector<Samples> &runs) {
+  const auto less = [](const Samples &a, const Samples &b) {
+    return a.log_evidence < b.log_evidence;
+  };
+  const auto [least, most] = std::minmax_element(runs.begin(), runs.end(), less);
+  return most->log_evidence - least->log_evidence;
 }
+
+bool are_alike(const std::vector<Samples> &runs) { return apart(runs) < alike_evidences; }
 
 } // namespace
 
@@ -101,6 +105,7 @@ Samples sample_all(const CurveModel &quick, const CurveModel &last,
     if (run > 0 && are_alike(runs) && highest_density(out.draws, {}, out.runs).growth < little)
       break;
   }
+  out.evidences_apart = apart(runs);
   out.effective = different(out.draws);
   return out;
 }

@@ -252,6 +252,7 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
   }
   out.is_settled = is_settled || out.is_broad;
   out.effective = samples.effective;
+  out.evidences_apart = samples.evidences_apart;
   if (judged.of > 0) // of all attitudes
     out.set95 = inverse::highest_density(samples.draws,
                                          out.is_broad ? std::span<const PoseMode>()

@@ -12,7 +12,8 @@ namespace umov::inverse {
 struct Samples {
   std::vector<PoseSample> draws;
   double log_evidence = 0;
-  double effective = 0; ///< size of an unweighted sample as good as this one
+  double evidences_apart = 0; ///< of its runs: the difference of the largest and the least, in ln
+  double effective = 0;       ///< size of an unweighted sample as good as this one
   /// Of each draw, the run that it came of, which is alike in those of one; empty: each draw is one
   /// by itself.
   std::vector<std::size_t> runs;

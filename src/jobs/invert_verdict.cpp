@@ -156,6 +156,12 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   if (!answer.is_settled)
     out.notes.emplace_back("the search did not come to rest: a better attitude than these may be "
                            "near; a larger --grid or --floor may help");
+  if (answer.evidences_apart > alike_evidences)
+    out.notes.emplace_back(
+        fmt::format("samples from other beginnings do not agree (the evidence of one is {:.2g} "
+                    "times that of another): set95.ecsv may lack places that hold some of the "
+                    "probability",
+                    std::exp(answer.evidences_apart)));
   if (out.verdict == Verdict::Undetermined && answer.is_settled && answer.effective < 20)
     out.notes.emplace_back(fmt::format("the samples are worth {:.1f} of the posterior's own: too "
                                        "few to say how sure the attitude is",
@@ -183,6 +189,7 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   out["model_error"] = answer.model_error;
   out["related_numbers"] = answer.related;
   out["log_evidence"] = answer.log_evidence;
+  out["evidences_apart"] = answer.evidences_apart;
   out["families"] = judgement.families.count;
   out["heaviest"] = judgement.families.heaviest;
   out["spread_deg"] = judgement.families.spread_deg;

@@ -72,9 +72,15 @@ struct PoseAnswer {
   bool is_broad = false;
   /// Every mode that matters is a bottom: its fit came to rest and no sample fits better.
   bool is_settled = true;
+  /// Where it is broad: by how much the ln evidences of its runs of particles differ. Runs that do
+  /// not agree have lost places that others found, and all may have lost some.
+  double evidences_apart = 0;
   double effective = 0; ///< size of an unweighted sample as good as `samples`
   std::size_t poses_lit = 0;
 };
+
+/// Evidences of runs that agree differ by less, in ln.
+inline constexpr double alike_evidences = 0.5;
 
 /// All fixed attitudes that explain a curve. Interrupted if the light stopped; BadInput for a curve
 /// without measurements.
