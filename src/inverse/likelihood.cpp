@@ -161,7 +161,9 @@ Gains CurveLikelihood::gains_of(const GainSums &sums) const {
   if (errors_.has_clouds) {
     for (std::size_t g = 0; g < groups_; ++g) {
       out.gain[g] = square[g] > 0 ? std::max(cross[g] / square[g], least) : 1;
-      out.log_det += square[g] > 0 ? std::log1p(square[g] * first * first) : 0;
+      // The integral over ln of the gain, as of the scale below. Over the gain itself it would
+      // prefer models that are dark but for one epoch, by as much as the others are darker.
+      out.log_det += square[g] > 0 ? std::log1p(square[g] * out.gain[g] * out.gain[g]) : 0;
     }
     return out;
   }
@@ -334,7 +336,7 @@ std::vector<Parameter> CurveLikelihood::nuisances() const {
   else
     out.push_back({"scale", "", 1e-30, 1e30, Prior::LogFlat});
   if (errors_.has_clouds)
-    out.push_back({"transparency of each epoch", "", 0, 1e30, Prior::Flat});
+    out.push_back({"transparency of each epoch", "", 1e-30, 1e30, Prior::LogFlat});
   else
     for (const std::string &band : bands_)
       out.push_back({"zero point of " + band, "", -1, 1, Prior::Normal, 0, errors_.zero_point_sd});

@@ -113,6 +113,22 @@ TEST(CurveLikelihood, CloudsTakeWhatIsCommonToTheBandsOfAnEpoch) {
   EXPECT_NEAR(CurveLikelihood(curve, errors).compare({light, none, none}).chi2, 0, 1e-9);
 }
 
+/// What clouds can do to the light of an epoch says nothing of the model: two that differ by a
+/// factor of each epoch are alike behind them.
+TEST(CurveLikelihood, BehindCloudsNoModelGainsByBeingDarkInAnEpoch) {
+  const auto light = model_light();
+  const std::vector<double> none(20, 0);
+  const ObservedCurve curve = sample(light, {1, 1});
+  auto flash = light;
+  for (std::size_t k = 0; k < flash.size(); ++k)
+    flash[k] *= k < 2 ? 1 : 0.01; // two bands an epoch: all but the first are dark beside it
+  CurveErrors errors = no_floor();
+  errors.has_clouds = true;
+  const CurveLikelihood likelihood(curve, errors);
+  EXPECT_NEAR(likelihood.compare({flash, none, none}).minus_2_log,
+              likelihood.compare({light, none, none}).minus_2_log, 1e-6);
+}
+
 TEST(CurveLikelihood, OutliersDoNotMoveTheScale) {
   const auto light = model_light();
   const std::vector<double> none(20, 0);
