@@ -185,7 +185,8 @@ void ChainSurfaces::tabulate_strength(std::size_t bands, const std::atomic<bool>
   constexpr std::size_t draws = 512;
   const Vec3<Body> normal{0, 0, 1};
   for (const Surface *surface : surface_) {
-    std::vector<double> &out = strength_.emplace_back(cosines + 1);
+    ByCosine &out = strength_.emplace_back(cosines + 1);
+    auto &of_band = strength_of_band_.emplace_back(bands, ByCosine(cosines + 1));
     if (is_left_to_paths(*surface))
       continue;
     const Sampler sampler(*surface);
@@ -201,19 +202,22 @@ void ChainSurfaces::tabulate_strength(std::size_t bands, const std::atomic<bool>
         const auto on = directions_on(normal, {}, d.to, w, dot(d.to, w), 0);
         for (std::size_t b = 0; b < bands; ++b) {
           const double f = surface->brdf(b, on).m[0][0] * d.to.z;
-          out[k] += f * f / d.density / static_cast<double>(draws * bands);
+          of_band[b][k] += f * f / d.density / draws;
         }
+      }
+      for (ByCosine &one : of_band) {
+        out[k] += one[k] / static_cast<double>(bands);
+        one[k] = std::sqrt(one[k] / (4 * pi));
       }
       out[k] = std::sqrt(out[k] / (4 * pi));
     }
   }
 }
 
-double ChainSurfaces::strength(std::uint32_t kind, double cosine) const {
-  const std::vector<double> &at = strength_[kind];
+double ChainSurfaces::at_cosine(const ByCosine &table, double cosine) {
   const double x = std::clamp(cosine, 0.0, 1.0) * cosines;
   const auto k = std::min(static_cast<std::size_t>(x), cosines - 1);
-  return at[k] + (x - static_cast<double>(k)) * (at[k + 1] - at[k]);
+  return table[k] + (x - static_cast<double>(k)) * (table[k + 1] - table[k]);
 }
 
 } // namespace umov

@@ -45,9 +45,15 @@ public:
   /// All that can be an end have, and no other light.
   [[nodiscard]] bool are_narrow() const { return are_narrow_; }
   [[nodiscard]] const std::vector<backend::ChainSurface> &fast() const { return fast_; }
-  /// rms over all outer directions of what an end scatters per solid angle, by the cosine between
-  /// its normal and the chain.
-  [[nodiscard]] double strength(std::uint32_t kind, double cosine) const;
+  /// rms over all bands and outer directions of what an end scatters per solid angle, by the cosine
+  /// between its normal and the chain.
+  [[nodiscard]] double strength(std::uint32_t kind, double cosine) const {
+    return at_cosine(strength_[kind], cosine);
+  }
+  /// The same of one band.
+  [[nodiscard]] double strength(std::uint32_t kind, double cosine, std::size_t band) const {
+    return at_cosine(strength_of_band_[kind][band], cosine);
+  }
 
 private:
   void tabulate_strength(std::size_t bands, const std::atomic<bool> *cancel);
@@ -55,7 +61,10 @@ private:
   std::unordered_map<const Surface *, std::uint32_t> kind_;
   std::vector<char> is_fast_, leaves_any_;
   std::vector<backend::ChainSurface> fast_;
-  std::vector<std::vector<double>> strength_;
+  using ByCosine = std::vector<double>;
+  static double at_cosine(const ByCosine &table, double cosine);
+  std::vector<ByCosine> strength_;                      ///< per kind
+  std::vector<std::vector<ByCosine>> strength_of_band_; ///< per kind and band
   bool needs_paths_ = false, has_any_ = false, are_fast_ = false, are_narrow_ = false;
 };
 

@@ -64,23 +64,21 @@ std::vector<double> ChainTrial::light_of(const Scene &scene, const ChainSurfaces
                                          std::size_t chain, ChainMatrices &of) const {
   const Chain &c = list_.chains[chain];
   const std::uint64_t number = 2 * (number_ + chain);
-  double ends = c.from_p + c.from_q;
-  std::uint32_t kind[2] = {};
-  for (const bool is_q : {false, true}) {
-    const ChainEnd &end = is_q ? c.q : c.p;
-    const Surface &surface = surface_of_slot(scene, end.slot);
-    kind[is_q ? 1 : 0] = surfaces.kind_of(&surface);
-    ends *= surfaces.strength(kind[is_q ? 1 : 0], dot(end.normal, end.along)) *
-            rays_.freedom(end, {Sampler(surface)}, number + (is_q ? 1 : 0));
-  }
+  const std::uint32_t p = surfaces.kind_of(&surface_of_slot(scene, c.p.slot)),
+                      q = surfaces.kind_of(&surface_of_slot(scene, c.q.slot));
   std::vector<double> out(scene.grid.nodes().size());
-  if (surfaces.part(kind[0], kind[1]) == ChainPart::Nothing)
+  if (surfaces.part(p, q) == ChainPart::Nothing)
     return out;
+  const double ends = (c.from_p + c.from_q) *
+                      rays_.freedom(c.p, {Sampler(surfaces.surface(p))}, number) *
+                      rays_.freedom(c.q, {Sampler(surfaces.surface(q))}, number + 1);
+  const double cosine_p = dot(c.p.normal, c.p.along), cosine_q = dot(c.q.normal, c.q.along);
   of.start(c.p.axis, c.p.along);
   for (std::uint32_t k = c.first; k < c.first + c.count; ++k)
     of.pass(list_.between[k]);
   for (std::size_t b = 0; b < out.size(); ++b)
-    out[b] = ends * of.transmitted(b);
+    out[b] = ends * surfaces.strength(p, cosine_p, b) * surfaces.strength(q, cosine_q, b) *
+             of.transmitted(b);
   return out;
 }
 

@@ -217,6 +217,17 @@ TEST(ChainMaterials, AnotherMeshIsAnotherBody) {
             elder->indirect(poses, direct, by_chains(2), 1)[0].bands[1].stokes.i);
 }
 
+/// Three plates at 430, 450, ... 650 nm.
+Scene in_twelve_bands(const std::vector<Material> &plates) {
+  std::vector<std::string> bands;
+  for (int nm = 430; nm <= 650; nm += 20)
+    bands.push_back("nm:" + std::to_string(nm));
+  Diagnostics diagnostics;
+  return make_scene(three_plates(), NormalMode::Flat, bands_from(bands).value(), plates, plates,
+                    diagnostics)
+      .value();
+}
+
 // Twelve bands, in one of which a body is white below a lobe that all have: there the body scatters
 // beside the lobe twelve times what it does in the mean, at an albedo that is little more.
 TEST(ChainMaterials, WhoIsNamedIsServedWhereBandsPeakApart) {
@@ -225,18 +236,25 @@ TEST(ChainMaterials, WhoIsNamedIsServedWhereBandsPeakApart) {
     out.index = constant_index({0.2, 5});
     out.body = grey(0.3).body;
     out.body->reflectance = {{400, at_nm - 1, at_nm, at_nm + 1, 700}, {0, 0, 0.05, 0, 0}};
-    std::vector<std::string> bands;
-    for (int nm = 420; nm < 660; nm += 20)
-      bands.push_back("nm:" + std::to_string(nm));
-    Diagnostics diagnostics;
-    const std::vector<Material> all(3, out);
-    return make_scene(three_plates(), NormalMode::Flat, bands_from(bands).value(), all, all,
-                      diagnostics)
-        .value();
+    return in_twelve_bands({out, out, out});
   };
-  const auto elder = drawn_for(peaking(480), {peaking(560), peaking(640)});
-  for (const double nm : {480.0, 560.0, 640.0})
+  const auto elder = drawn_for(peaking(490), {peaking(570), peaking(650)});
+  for (const double nm : {490.0, 570.0, 650.0})
     EXPECT_TRUE(taking(peaking(nm), elder).takes_chains(4, 0)) << nm;
+}
+
+// A plate of .06 that is .9 in the last of twelve bands: there its light is on chains 15 times as
+// rare for it as those of the other two. By f^2 in the mean of all bands it would be 4.4 times.
+TEST(ChainMaterials, OneBrightBandDrawsItsOwn) {
+  const auto plates = [](double last) {
+    Material one = grey(0.06);
+    one.body->reflectance = {{400, 640, 650, 700}, {0.06, 0.06, last, last}};
+    return in_twelve_bands({one, grey(0.8), grey(0.8)});
+  };
+  const auto elder = drawn_for(plates(0.06));
+  EXPECT_TRUE(taking(plates(0.06), elder).takes_chains(2, 0));
+  EXPECT_TRUE(taking(plates(0.12), elder).takes_chains(2, 0));
+  EXPECT_FALSE(taking(plates(0.9), elder).takes_chains(2, 0));
 }
 
 // Candidates come in any order, and whoever is lit first draws.
