@@ -7,12 +7,9 @@ usage: acceptance.py OBJECT TRIALS [--snr 20] [--seed 1] [--floor 0.005] [--firs
 OBJECT: as blind.py has them. --third: 40 epochs in that third of the pass instead of one every 12 s of all of it. --clouds: the air of every epoch lets through
 another part (normal in ln, a third), which is free in the fit.
 missed: the truth itself fits better than the best mode by more than 2 in chi-square (with the gains that the data were made with, so it fits a little better still)."""
-import argparse
 import math
-import pathlib
 import random
 import statistics
-import tempfile
 import typing
 
 import blind
@@ -67,21 +64,10 @@ def asked(o, work, meshes, trial):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("object", choices=blind.MESH)
-    parser.add_argument("trials", type=int)
-    parser.add_argument("--snr", type=float, default=20)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--floor", type=float, default=0.005, help="error of the model, put in and told")
-    parser.add_argument("--first", type=int, default=0)
+    parser = coverage.parser_of("trials", snr=20, floor=0.005)
     parser.add_argument("--third", type=int, choices=(0, 1, 2))
     parser.add_argument("--clouds", action="store_true")
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
-    o, rest = parser.parse_known_args()
-    o.rest, o.surfaces, o.wrong, o.truth = [*coverage.KNOWN, "--floor", o.floor, *rest], 1, 0, None
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    o, work = coverage.told(parser)
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
         blind.make_mesh(o.umov, words, mesh)

@@ -79,22 +79,34 @@ def interval(n, k, outside=0.05):
     return (where(lambda p: tail(n, k, p) < outside / 2) if k else 0.0, where(lambda p: 1 - tail(n, k + 1, p) > outside / 2) if k < n else 1.0)
 
 
-def main():
+def parser_of(count, snr, floor):
+    """What all programs are told that ask for many curves of one kind; `count`: the name of how many."""
     parser = argparse.ArgumentParser()
     parser.add_argument("object", choices=blind.MESH)
-    parser.add_argument("curves", type=int)
-    parser.add_argument("--snr", type=float, default=100)
+    parser.add_argument(count, type=int)
+    parser.add_argument("--snr", type=float, default=snr)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--floor", type=float, default=0.02, help="error of the model, put in and told")
-    parser.add_argument("--first", type=int, default=0, help="curve of the seed to begin with")
-    parser.add_argument("--only", type=int, help="of the curves, this one alone")
-    parser.add_argument("--dark", type=int, default=0)
+    parser.add_argument("--floor", type=float, default=floor, help="error of the model, put in and told")
+    parser.add_argument("--first", type=int, default=0, help="of the seed, the one to begin with")
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
+    return parser
+
+
+def told(parser):
+    """The options, with what blind.py's functions ask for, and the folder to work in; what is not known here goes on to umov invert."""
     o, rest = parser.parse_known_args()
     o.rest, o.surfaces, o.wrong, o.truth = [*KNOWN, "--floor", o.floor, *rest], 1, 0, None
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
+    return o, work
+
+
+def main():
+    parser = parser_of("curves", snr=100, floor=0.02)
+    parser.add_argument("--only", type=int, help="of the curves, this one alone")
+    parser.add_argument("--dark", type=int, default=0)
+    o, work = told(parser)
     mesh = work / f"{o.object}.obj"
     blind.make_mesh(o.umov, blind.MESH[o.object][0], mesh)
     answers = []

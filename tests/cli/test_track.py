@@ -390,5 +390,6 @@ def test_counts_are_followed(made, tmp_path):
     assert verdict["lost_utc"] is None and verdict["epochs_before"] > 0
     assert verdict["dof"] == 4 * verdict["epochs"]  # channels of a polarimetric camera
     assert verdict["p_value"] > 1e-3
-    best = min(verdict["modes"], key=lambda mode: apart(TRUTH, mode["q"]))
-    assert apart(TRUTH, best["q"]) < 4 * best["sd_deg"] and best["weight"] > 0.01
+    # Of hundreds of filters in one family the nearest has any weight: those that hold the truth together have nearly all.
+    held = sum(mode["weight"] for mode in verdict["modes"] if apart(TRUTH, mode["q"]) < 4 * mode["sd_deg"])
+    assert held > 0.95

@@ -9,7 +9,7 @@
 
 namespace umov {
 
-/// One set of materials: what each slot is of, without regard to its mesh. Both must live.
+/// One set of materials: what each slot is of, without regard to its mesh. The scene must live.
 struct ChainMember {
   const Scene *sides = nullptr;
   std::shared_ptr<const ChainSurfaces> surfaces; ///< of the scene

@@ -76,6 +76,10 @@ Scene at_nodes(const Scene &scene, const std::vector<std::size_t> &which) {
 
 double phase_of(const Pose &pose) { return std::acos(cos_phase(pose)); }
 
+Elements elements_of(const Scene &scene, const std::atomic<bool> *cancel) {
+  return make_elements(scene, visible_sides(scene.mesh, cancel), cancel);
+}
+
 /// Light of poses by the engine and how far the reference's is from it, at a few wavelengths.
 struct Looked {
   StokesTable fast;
@@ -83,27 +87,43 @@ struct Looked {
   std::vector<double> difference; ///< of I [pose * nodes + node]
 };
 
-Looked look_at(const Scene &scene, const Engine &unhidden, const std::vector<Pose> &poses,
-               unsigned threads, const std::atomic<bool> *cancel) {
-  Looked out;
-  LightTask task;
-  task.threads = threads;
-  task.cancel = cancel;
-  (void)unhidden.evaluate(poses, out.fast, task);
-  leave_if_stopped(cancel);
-  out.nodes = few_nodes(out.fast.bands); // what is missed hardly depends on them
-  const Elements elements = make_elements(scene, visible_sides(scene.mesh, cancel), cancel);
-  const Scene few = out.nodes.size() < out.fast.bands ? at_nodes(scene, out.nodes) : scene;
-  out.difference.resize(poses.size() * out.nodes.size());
-  parallel_for(poses.size(), threads, [&](std::size_t k) {
-    const LitElements lit =
-        light_elements(few, elements, geometry_of(poses[k]), {1, 0, 0, 0}, cancel);
-    for (std::size_t n = 0; n < out.nodes.size(); ++n)
-      out.difference[k * out.nodes.size() + n] =
-          std::abs(out.fast.i[k * out.fast.bands + out.nodes[n]] - lit.total[n]);
-  });
-  return out;
-}
+} // namespace
+
+/// The engine and the reference of one scene, for all phase angles that are asked for at once.
+class CurvedErrors::Beside {
+public:
+  /// What it is given must live as long.
+  Beside(const Scene &scene, const Engine &unhidden, const Elements &elements)
+      : unhidden_(unhidden), elements_(elements),
+        nodes_(few_nodes(scene.grid.nodes().size())), // what is missed hardly depends on them
+        scene_(nodes_.size() < scene.grid.nodes().size() ? at_nodes(scene, nodes_) : scene) {}
+
+  [[nodiscard]] Looked look(const std::vector<Pose> &poses, unsigned threads,
+                            const std::atomic<bool> *cancel) const {
+    Looked out{{}, nodes_, std::vector<double>(poses.size() * nodes_.size())};
+    LightTask task;
+    task.threads = threads;
+    task.cancel = cancel;
+    (void)unhidden_.evaluate(poses, out.fast, task);
+    leave_if_stopped(cancel);
+    parallel_for(poses.size(), threads, [&](std::size_t k) {
+      const LitElements lit =
+          light_elements(scene_, elements_, geometry_of(poses[k]), {1, 0, 0, 0}, cancel);
+      for (std::size_t n = 0; n < nodes_.size(); ++n)
+        out.difference[k * nodes_.size() + n] =
+            std::abs(out.fast.i[k * out.fast.bands + nodes_[n]] - lit.total[n]);
+    });
+    return out;
+  }
+
+private:
+  const Engine &unhidden_;
+  const Elements &elements_;
+  std::vector<std::size_t> nodes_;
+  Scene scene_; ///< at those wavelengths
+};
+
+namespace {
 
 /// What part of the light is missed at most, where light counts as `dim_i` [per band] at least.
 double most_missed(const Looked &looked, const std::vector<double> &dim_i) {
@@ -119,25 +139,27 @@ double most_missed(const Looked &looked, const std::vector<double> &dim_i) {
   return most;
 }
 
-bool has_curves(const Scene &scene, const std::atomic<bool> *cancel) {
-  return scene.normals == NormalMode::Smooth &&
-         std::ranges::any_of(make_elements(scene, visible_sides(scene.mesh, cancel), cancel).list,
-                             [](const Element &e) { return !e.is_flat; });
+bool has_curves(const Elements &elements) {
+  return std::ranges::any_of(elements.list, [](const Element &e) { return !e.is_flat; });
 }
 
 } // namespace
 
 CurvedErrors::CurvedErrors(const Scene &scene, const Engine &unhidden, unsigned threads,
                            const std::atomic<bool> *cancel)
-    : scene_(scene), is_flat_(!has_curves(scene, cancel)) {
+    : scene_(scene) {
   static_assert(std::size(phases_deg) == node_count);
+  if (scene.normals != NormalMode::Smooth)
+    return;
+  const Elements elements = elements_of(scene, cancel);
+  is_flat_ = !has_curves(elements);
   if (!is_flat_)
-    learn(0, unhidden, threads, cancel);
+    learn(0, Beside(scene, unhidden, elements), threads, cancel);
 }
 
-void CurvedErrors::learn(std::size_t node, const Engine &unhidden, unsigned threads,
+void CurvedErrors::learn(std::size_t node, const Beside &beside, unsigned threads,
                          const std::atomic<bool> *cancel) const {
-  const Looked looked = look_at(scene_, unhidden, poses_about(node), threads, cancel);
+  const Looked looked = beside.look(poses_about(node), threads, cancel);
   const std::size_t bands = looked.fast.bands;
   Node &out = nodes_[node];
   out.dim_i.assign(bands, 0);
@@ -169,9 +191,11 @@ void CurvedErrors::learn_for(std::span<const Pose> poses, unsigned threads,
     return;
   const std::scoped_lock lock(mutex_);
   const Engine unhidden(scene_, {.visibility = Visibility::None, .threads = 1}, cancel);
+  const Elements elements = elements_of(scene_, cancel);
+  const Beside beside(scene_, unhidden, elements);
   for (std::size_t node = 0; node < node_count; ++node)
     if (lacks(node))
-      learn(node, unhidden, threads, cancel);
+      learn(node, beside, threads, cancel);
 }
 
 double CurvedErrors::typical() const { return is_flat_ ? least : nodes_.front().of_lit; }

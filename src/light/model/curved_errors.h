@@ -39,14 +39,15 @@ private:
     [[nodiscard]] double at(std::size_t band, double i) const;
   };
   static constexpr std::size_t node_count = 10;
-  void learn(std::size_t node, const Engine &unhidden, unsigned threads,
+  class Beside;
+  void learn(std::size_t node, const Beside &beside, unsigned threads,
              const std::atomic<bool> *cancel) const;
   void learn_for(std::span<const Pose> poses, unsigned threads,
                  const std::atomic<bool> *cancel) const;
   [[nodiscard]] double at(double phase_rad, std::size_t band, double i) const;
 
   const Scene &scene_;
-  bool is_flat_ = false; ///< nothing is curved
+  bool is_flat_ = true; ///< nothing is curved
   mutable std::mutex mutex_;
   mutable std::array<std::atomic<bool>, node_count> is_known_{};
   mutable std::array<Node, node_count> nodes_; ///< phase angles rise
