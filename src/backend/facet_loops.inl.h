@@ -242,12 +242,13 @@ private:
   template <bool is_curved> UMOV_KERNEL void shade_lobe(std::size_t lobe) {
     R sum = R(T(0)), variance = R(T(0)), linear = R(T(0)), bias = R(T(0));
     const bool is_clustered = !scene_.cluster_error.empty(), varies = lit_.varies();
+    const R reach = R(pose_.lobes[lobe].reach);
     for (std::size_t k = 0; k < lit_.count(); k += width) {
       const R n_l = lit_.n_l(k), n_v = lit_.n_v(k), apart = lit_.apart(k);
+      if (!Machine::any(apart < reach) && !(is_curved && curved_.has_any(k)))
+        continue; // asked before the density is known: what follows does not wait for the answer
       const R density = lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet,
                                      from_half(pose_.facet, apart, n_l, n_v));
-      if (!Machine::any(density > R(T(0))) && !(is_curved && curved_.has_any(k)))
-        continue; // far from a narrow lobe
       R w = density * lobe_shadowing(scene_.lobes[lobe], pose_.facet, n_l, n_v) * R(T(0.25));
       if constexpr (is_curved)
         w = curved_.in_place_of(w, k);
