@@ -193,7 +193,7 @@ private:
       const auto seconds = [&] {
         const double begin = now_s();
         LightTask task;
-        task.threads = one.threads;
+        task.threads = 0; // as an engine prepares itself
         (void)model_->evaluate(poses, {}, table, task);
         return now_s() - begin;
       };
