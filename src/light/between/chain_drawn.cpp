@@ -1,6 +1,5 @@
 #include "light/between/chain_drawn.h"
 
-#include "light/between/made_once.h"
 #include "light/fast/octahedron.h"
 
 #include <algorithm>
@@ -251,7 +250,7 @@ ChainCount ChainDrawing::count_of(std::size_t level) {
 
 const ChainDrawn *ChainDrawing::drawn(std::size_t level, unsigned threads,
                                       const std::atomic<bool> *cancel) const {
-  return made_once(mutex_, drawn_[level], cancel, [&] {
+  return drawn_[level].get(cancel, [&] {
     const Occluder *grids = level < levels ? &grids_ : nullptr; // the reserve's ends ask rays
     return std::make_unique<const ChainDrawn>(
         draw_chains(rays_, occluder_, grids, count_of(level), threads, cancel));
@@ -260,10 +259,11 @@ const ChainDrawn *ChainDrawing::drawn(std::size_t level, unsigned threads,
 
 bool ChainDrawing::serves(const Scene &scene, const ChainSurfaces &surfaces,
                           const std::atomic<bool> *cancel) const {
-  const ChainTrial *trial = made_once(mutex_, trial_, cancel, [&] {
+  const ChainTrial *trial = trial_.get(cancel, [&] {
     return std::make_unique<const ChainTrial>(rays_, cover_, count_of(levels + 1).first, cancel);
   });
-  leave_if_stopped(cancel);
+  if (trial == nullptr)
+    leave_stopped();
   return trial->serves(scene, surfaces, cancel);
 }
 

@@ -4,11 +4,10 @@
 
 #include "backend/chain_data.h"
 #include "light/between/chain_trial.h"
+#include "light/between/made_once.h"
 #include "light/between/replicates.h"
 
 #include <array>
-#include <memory>
-#include <umov/core/locks.h>
 #include <umov/shape/occluder.h>
 
 namespace umov {
@@ -79,9 +78,8 @@ private:
   const Occluder &occluder_;
   Occluder grids_; ///< for the many rays of the ends' visibility
   std::uint64_t seed_;
-  mutable Mutex mutex_;
-  mutable std::array<std::unique_ptr<const ChainDrawn>, levels + 1> drawn_;
-  mutable std::unique_ptr<const ChainTrial> trial_;
+  mutable std::array<MadeOnce<ChainDrawn>, levels + 1> drawn_;
+  mutable MadeOnce<ChainTrial> trial_;
 };
 
 } // namespace umov

@@ -1,7 +1,5 @@
 #include "light/between/chain_store.h"
 
-#include "light/between/made_once.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -113,14 +111,14 @@ ChainStore::ChainStore(std::shared_ptr<const ChainDrawing> drawing, const Scene 
 const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
                                     const std::atomic<bool> *cancel) const {
   const ChainDrawn *drawn = drawing_->drawn(index, threads, cancel);
-  return drawn == nullptr ? nullptr : made_once(mutex_, level_[index], cancel, [&] {
+  return drawn == nullptr ? nullptr : level_[index].get(cancel, [&] {
     return std::make_unique<const ChainLevel>(*drawn, materials_, index, threads, cancel);
   });
 }
 
 const ChainReserve *ChainStore::reserve(unsigned threads, const std::atomic<bool> *cancel) const {
   const ChainDrawn *drawn = drawing_->drawn(levels, threads, cancel);
-  return drawn == nullptr ? nullptr : made_once(mutex_, reserve_, cancel, [&] {
+  return drawn == nullptr ? nullptr : reserve_.get(cancel, [&] {
     return std::make_unique<const ChainReserve>(*drawn, materials_, threads, cancel);
   });
 }

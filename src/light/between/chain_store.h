@@ -3,11 +3,11 @@
 
 #include "light/between/chain_level.h"
 #include "light/between/chain_reserve.h"
+#include "light/between/made_once.h"
 
 #include <atomic>
 #include <memory>
 #include <span>
-#include <umov/core/locks.h>
 #include <umov/core/stop.h>
 #include <umov/light/integrator.h>
 
@@ -57,9 +57,8 @@ private:
   std::shared_ptr<const ChainSurfaces> surfaces_;
   ChainMaterials materials_;
   std::size_t bands_;
-  mutable Mutex mutex_;
-  mutable std::array<std::unique_ptr<const ChainLevel>, levels> level_;
-  mutable std::unique_ptr<const ChainReserve> reserve_;
+  mutable std::array<MadeOnce<ChainLevel>, levels> level_;
+  mutable MadeOnce<ChainReserve> reserve_;
 };
 
 } // namespace umov

@@ -8,19 +8,29 @@
 
 namespace umov {
 
-/// What `make()`, a pointer, made once and put into `kept`. Null where `cancel` became true
-/// meanwhile: what came of it is let go, and whoever asks next begins anew.
-template <class T, class Make>
-const T *made_once(Mutex &mutex, std::unique_ptr<const T> &kept, const std::atomic<bool> *cancel,
-                   const Make &make) {
-  const WriteLock lock(mutex);
-  if (!kept) {
-    std::unique_ptr<const T> made = make();
-    if (is_stopped(cancel))
-      return nullptr;
-    kept = std::move(made);
+/// Something that is made once. Thread safe; who comes later does not wait for a lock.
+template <class T> class MadeOnce {
+public:
+  /// What `make()`, a unique_ptr, made. Null where `cancel` became true meanwhile: what came of it
+  /// is let go, and whoever asks next begins anew.
+  template <class Make> const T *get(const std::atomic<bool> *cancel, const Make &make) {
+    if (const T *made = made_.load(std::memory_order_acquire))
+      return made;
+    const WriteLock lock(mutex_);
+    if (!kept_) {
+      std::unique_ptr<const T> made = make();
+      if (is_stopped(cancel))
+        return nullptr;
+      kept_ = std::move(made);
+      made_.store(kept_.get(), std::memory_order_release);
+    }
+    return kept_.get();
   }
-  return kept.get();
-}
+
+private:
+  Mutex mutex_;
+  std::unique_ptr<const T> kept_;
+  std::atomic<const T *> made_{nullptr}; ///< `kept_`, for who looks without the lock
+};
 
 } // namespace umov
