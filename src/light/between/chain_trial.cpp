@@ -121,17 +121,28 @@ bool ChainTrial::serves(const Scene &scene, const ChainSurfaces &surfaces,
   if (!cover_.has_kinds_of(scene, surfaces) || !serves_rare_ones(scene))
     return false;
   const std::size_t bands = scene.grid.nodes().size();
-  std::vector<std::vector<Portion>> together(bands), of_pair(bands * pairs_);
+  std::vector<std::vector<double>> light(bands);
   ChainMatrices matrices(scene, scene.mesh);
   for (std::size_t k = 0; k < list_.chains.size(); ++k) {
     leave_if_stopped(cancel, k);
-    const std::vector<double> light = light_of(scene, surfaces, k, matrices);
-    for (std::size_t b = 0; b < bands; ++b) {
-      together[b].push_back({light[b], kept_[k]});
-      of_pair[pair_[k] * bands + b].push_back({light[b], kept_[k]});
-    }
+    const std::vector<double> one = light_of(scene, surfaces, k, matrices);
+    for (std::size_t b = 0; b < bands; ++b)
+      light[b].push_back(one[b]);
   }
-  return std::ranges::all_of(together, is_even) && std::ranges::all_of(of_pair, is_even);
+  return std::ranges::all_of(
+      light, [&](const std::vector<double> &of_band) { return is_even_in(of_band); });
+}
+
+bool ChainTrial::is_even_in(const std::vector<double> &light) const {
+  std::vector<Portion> together;
+  std::vector<std::vector<Portion>> of_pair(pairs_);
+  for (std::size_t k = 0; k < light.size(); ++k) {
+    together.push_back({light[k], kept_[k]});
+    of_pair[pair_[k]].push_back({light[k], kept_[k]});
+  }
+  return is_even(std::move(together)) &&
+         std::ranges::all_of(of_pair,
+                             [](std::vector<Portion> &one) { return is_even(std::move(one)); });
 }
 
 } // namespace umov

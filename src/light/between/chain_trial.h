@@ -28,6 +28,8 @@ private:
   [[nodiscard]] std::vector<double> light_of(const Scene &scene, const ChainSurfaces &surfaces,
                                              std::size_t chain, class ChainMatrices &of) const;
   [[nodiscard]] bool serves_rare_ones(const Scene &scene) const;
+  /// `light`: per chain, of one band.
+  [[nodiscard]] bool is_even_in(const std::vector<double> &light) const;
   static bool is_even(std::vector<Portion> all);
 
   const ChainRays &rays_;
