@@ -64,17 +64,24 @@ template <class F> void for_each_probe(const F &f) {
       f(directions_on(normal, field, from, to, dot(from, to), 0));
 }
 
-/// What tells materials apart, and orders them, whatever they are called.
+/// What tells materials apart, and orders them, whatever they are called: all of their matrices,
+/// since some differ in nothing but polarization.
 std::vector<double> looks_of(const Scene &sides, const std::atomic<bool> *cancel) {
   std::vector<double> out;
   for (std::uint32_t slot = 0; slot < slots_of(sides); ++slot) {
     leave_if_stopped(cancel);
     const Surface &surface = surface_of_slot(sides, slot);
     for (std::size_t b = 0; b < bands_of(sides); ++b) {
-      for (const double cosine : probe_cosines)
-        out.push_back(mirrored_part(surface, b, cosine));
-      for_each_probe(
-          [&](const SurfaceDirections &on) { out.push_back(surface.brdf(b, on).m[0][0]); });
+      for (const double cosine : probe_cosines) {
+        const double part = surface.mirror_part(b, cosine);
+        const MuellerEntries mirrored = surface.reflection(b, cosine);
+        for (const double entry : {mirrored.a, mirrored.b, mirrored.z.real(), mirrored.z.imag()})
+          out.push_back(part * entry);
+      }
+      for_each_probe([&](const SurfaceDirections &on) {
+        for (const auto &row : surface.brdf(b, on).m)
+          out.insert(out.end(), std::begin(row), std::end(row));
+      });
     }
     const Vec3<Body> direction = surface.material().direction.value_or(Vec3<Body>{});
     out.insert(out.end(), {direction.x, direction.y, direction.z});

@@ -16,8 +16,9 @@ struct ChainMember {
 };
 
 /// One set of materials or several, the members, whose chains are the same: at each surface they go
-/// on as one of the members would have it, each as often. Slots that are alike in all members are
-/// of one kind. What is drawn does not depend on the order in which the members come.
+/// on in a way that one of the members has, each such way as often, however many have it. Slots
+/// that are alike in all members are of one kind. What is drawn does not depend on the order in
+/// which the members come.
 class ChainCover {
 public:
   /// Slots must be the same. Throws Failure (Interrupted) once `cancel`, which may be null, became
