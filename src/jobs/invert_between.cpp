@@ -21,7 +21,8 @@ Result<const PoseLight *> whole_light(WholeLight &whole, const Scenario &scenari
     SignatureRequest rough;
     rough.method = LightMethod::Rays;
     rough.accuracy = 0.1;
-    JobOptions by_processor = options; // cards trace no rays
+    rough.between = BetweenMethod::Paths; // of a dozen poses
+    JobOptions by_processor = options;    // cards trace no rays
     by_processor.device = {};
     Diagnostics twice; // the object was read before: its warnings are known
     UMOV_ASSIGN(made, PoseLight::make(with, rough, by_processor, twice, monitor.cancel));

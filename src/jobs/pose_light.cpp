@@ -79,7 +79,6 @@ LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &r
   out.seed = request.seed.value_or(scenario.seed);
   out.source = source;
   out.mask_file = request.mask_file;
-  out.poses_in_all = request.poses_in_all;
   return out;
 }
 
@@ -105,9 +104,10 @@ Result<void> PoseLight::check(const Scenario &scenario, const SignatureRequest &
 
 Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureRequest &request,
                                   const JobOptions &options, Diagnostics &diagnostics,
-                                  const std::atomic<bool> *cancel) {
+                                  const std::atomic<bool> *cancel, std::size_t poses_in_all) {
   UMOV_ASSIGN(source, source_of(request));
-  const LightOptions light = light_asked_for(scenario, request, source, options);
+  LightOptions light = light_asked_for(scenario, request, source, options);
+  light.poses_in_all = poses_in_all;
   UMOV_TRY(check_request(scenario, request));
   const bool is_sun = request.source == Source::Sun;
   UMOV_ASSIGN(object, load_object(scenario, 0,

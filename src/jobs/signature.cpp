@@ -24,11 +24,13 @@ constexpr const char *laser_limits =
     "circular light about twice as fast as linear. For very rough metals near retro-reflection the "
     "double bounce is understated.";
 
-std::string between_of(const LightOptions &options) {
-  const bool has_all =
-      options.between != BetweenMethod::Chains || draws_reserve(options.poses_in_all);
-  return std::string(name_of(options.between)) +
-         (has_all ? "" : ", and paths where few of them are met");
+std::string between_of(const LightModel &model, const LightOptions &options) {
+  if (model.facts().is_convex)
+    return "none: a convex body";
+  if (options.between != BetweenMethod::Chains || !is_sunlight(options.source))
+    return name_of(BetweenMethod::Paths);
+  return std::string(name_of(BetweenMethod::Chains)) + ", and paths for what they cannot tell" +
+         (draws_reserve(options.poses_in_all) ? "" : " and where few of them are met");
 }
 
 /// What the header says of the source, of who lit (`device`) and of how hiding was decided.
@@ -53,7 +55,7 @@ void describe(const SignatureRequest &request, const PoseLight &light, const std
     table.note("limits", laser_limits);
   table.note("visibility", visibility);
   if (light.options().bounces > 1)
-    table.note("between surfaces", between_of(light.options()));
+    table.note("between surfaces", between_of(light.model(), light.options()));
 }
 
 /// Chains cost seconds before the first pose, and are worth it where poses are many and do not tell
@@ -79,8 +81,14 @@ SignatureRequest decided(const Scenario &scenario, const PoseList &poses,
   SignatureRequest out = request;
   const BetweenMethod between = request.between.value_or(scenario.light.between);
   out.between = between == BetweenMethod::Auto ? between_for(poses) : between;
-  out.poses_in_all = poses.count;
   return out;
+}
+
+Result<PoseLight> light_for(const Scenario &scenario, const PoseList &poses,
+                            const SignatureRequest &request, const JobOptions &options,
+                            const Monitor &monitor, Diagnostics &diagnostics) {
+  return PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics,
+                         monitor.cancel, poses.count);
 }
 
 /// What the rows depend on.
@@ -248,8 +256,7 @@ ranged_signature(const Scenario &scenario, const PoseList &poses, const Signatur
                  const JobOptions &options, const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_TRY(PoseLight::check(scenario, request));
   UMOV_TRY(check_device_of_shards(options.device));
-  UMOV_ASSIGN(light, PoseLight::make(scenario, decided(scenario, poses, request), options,
-                                     diagnostics, monitor.cancel));
+  UMOV_ASSIGN(light, light_for(scenario, poses, request, options, monitor, diagnostics));
   UMOV_ASSIGN(device, device_text(options.device));
   std::string identity = job_of(scenario, poses, request, light, device);
   return std::make_unique<RangedSignature>(poses, request, options, std::move(light),
@@ -263,8 +270,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(range, options.part.of(poses.count, "poses"));
   monitor.tell("preparing the scene ...");
   const bool had_file = file_exists(request.mask_file);
-  UMOV_ASSIGN(light, PoseLight::make(scenario, decided(scenario, poses, request), options,
-                                     diagnostics, monitor.cancel));
+  UMOV_ASSIGN(light, light_for(scenario, poses, request, options, monitor, diagnostics));
   const LightModel &model = light.model();
   UMOV_ASSIGN(device, device_text(options.device));
   UMOV_ASSIGN(journal,

@@ -55,6 +55,22 @@ def test_rays_and_masks_give_the_same_whole(umov, scenario, tmp_path):
             assert abs(float(one[name]) - float(two[name])) <= error + 1e-12
 
 
+def test_the_header_says_who_draws_light_between_surfaces(umov, scenario, tmp_path):
+    """Chains are asked for: a convex body has no such light, and light that is polarized as it comes takes paths."""
+    name = scenario(("[output]", '[render]\nbounces = 2\naccuracy = 0.2\nbetween = "chains"\n[output]'), ('set = "paper_rgb"', 'set = ["nm:550"]'))
+
+    def told(*options):
+        done = umov("signature", name, "--poses", 2, "--phase", 60, "-o", "s.ecsv", *options)
+        assert done.code == 0, done.err
+        return (tmp_path / "s.ecsv").read_text()
+
+    assert "none: a convex body" in told()
+    assert umov("mesh", "make", "box-wing", "--facets", 600, "-o", "cube.obj").code == 0
+    assert "chains, and paths for what they cannot tell and where few of them are met" in told()
+    laser = told("--source", "laser", "--state", 1, 0, 0, 1)
+    assert "paths" in laser and "chains, and" not in laser
+
+
 def test_a_warm_body_shines_by_itself(umov, scenario, tmp_path):
     """A cube is convex: what it emits is that of its faces, and other groups can be warmer."""
     (tmp_path / "plates.obj").write_text(

@@ -17,10 +17,11 @@ public:
   /// Usage or BadInput for what does not go together, before anything is read.
   static Result<void> check(const Scenario &scenario, const SignatureRequest &request);
   /// Checks, reads and compiles. Usage for what does not go together; warns of parts that cannot
-  /// turn here; Interrupted once `cancel` became true.
+  /// turn here; Interrupted once `cancel` became true. `poses_in_all`: IntegrationOptions'.
   static Result<PoseLight> make(const Scenario &scenario, const SignatureRequest &request,
                                 const JobOptions &options, Diagnostics &diagnostics,
-                                const std::atomic<bool> *cancel = nullptr);
+                                const std::atomic<bool> *cancel = nullptr,
+                                std::size_t poses_in_all = 0);
   PoseLight(PoseLight &&) noexcept;
   PoseLight &operator=(PoseLight &&) noexcept;
   ~PoseLight();

@@ -43,7 +43,6 @@ struct SignatureRequest {
   std::optional<std::uint64_t> seed;    ///< over the scenario's: of point sets and paths
   std::optional<BetweenMethod> between; ///< over the scenario's
   std::filesystem::path mask_file;      ///< LightOptions::mask_file
-  std::size_t poses_in_all = 0; ///< IntegrationOptions::poses_in_all; `signature` knows it itself
 };
 
 /// Rows of all poses into `sink`, block by block: memory does not grow with their number. The

@@ -34,8 +34,8 @@ struct IntegrationOptions {
   /// Up to 64. Convex meshes have direct light alone.
   std::size_t bounces = 1;
   BetweenMethod between = BetweenMethod::Paths; ///< Auto is Paths
-  /// How many poses will be asked for, whoever asks for how many at a time; 0: many. Chains that
-  /// take seconds to draw are not drawn for few (`draws_reserve`).
+  /// How many poses will be asked for, whoever asks for how many at once; 0: many, or of models to
+  /// be compared. Chains that take seconds to draw are not drawn for few (`draws_reserve`).
   std::size_t poses_in_all = 0;
 };
 
