@@ -162,5 +162,51 @@ UMOV_KERNEL Beam<R> chain_left(const Surface &surface, R lobe, const ChainEndAt<
   return {x.i + y.i, x.q + y.q, x.u + y.u, x.v};
 }
 
+/// An end as it is drawn.
+template <class R> struct ChainEndAxes { Triple<R> normal, along, axis; };
+/// A chain and a pose, but for the band: `at_sun` and `at_observer` turn axes as above, `straight`
+/// from the lit end's to the other's where nothing lies between.
+template <class R> struct ChainAt {
+  ChainEndAt<R> seen, lit;
+  BeamTurn<R> at_sun, straight;
+  TurnsAtObserver<R> at_observer;
+};
+template <class R>
+UMOV_KERNEL ChainAt<R> chain_at(const ChainEndAxes<R> &seen, const ChainEndAxes<R> &lit,
+                                const ChainEndAt<R> &seen_at, const ChainEndAt<R> &lit_at,
+                                Triple<R> sun, Triple<R> observer, Triple<R> plane) {
+  return {seen_at, lit_at, turn_at_sun(lit.along, lit.axis, sun),
+          beam_turn(lit.axis, seen.axis, lit.along),
+          turns_at_observer(seen.normal, seen.along, seen.axis, observer, plane)};
+}
+
+/// Light carried through what lies between, by the elements `entry(row, column)` of its matrix;
+/// from behind by the transposed one with the signs of U, by reciprocity.
+template <class R, class Entry>
+UMOV_KERNEL Beam<R> chain_between(const Entry &entry, bool is_reversed, Beam<R> light) {
+  const R u = is_reversed ? -light.u : light.u;
+  R out[4] = {light.i, light.q, u, light.v};
+  for (std::uint32_t r = 0; r < 4; ++r)
+    out[r] = is_reversed ? entry(0, r) * light.i + entry(1, r) * light.q + entry(2, r) * u +
+                               entry(3, r) * light.v
+                         : entry(r, 0) * light.i + entry(r, 1) * light.q + entry(r, 2) * u +
+                               entry(r, 3) * light.v;
+  return {out[0], out[1], is_reversed ? -out[2] : out[2], out[3]};
+}
+
+/// What a chain carries from the Sun to the observer in one band; `pass` takes a beam from the lit
+/// end to the other.
+template <class R, class Surface, class Pass>
+UMOV_KERNEL Beam<R> chain_carried(const Surface &seen, const Surface &lit, R lobe_seen, R lobe_lit,
+                                  const ChainAt<R> &at, bool is_without_lobes, const Pass &pass) {
+  const Entered<R> entered = chain_entered(lit, lobe_lit, at.lit, at.at_sun);
+  const Beam<R> in = pass(entered.whole);
+  Beam<R> to_lobe = in;
+  if (is_without_lobes)
+    to_lobe = pass(Beam<R>{entered.whole.i - entered.lobe.i, entered.whole.q - entered.lobe.q,
+                           entered.whole.u - entered.lobe.u, entered.whole.v});
+  return chain_left(seen, lobe_seen, at.seen, at.at_observer, in, to_lobe);
+}
+
 #include "kernel/end.h"
 #endif

@@ -27,12 +27,10 @@ struct ThreeWords {
   }
 };
 
-struct EndAxes {
-  Axes normal, along, axis;
-  HWY_INLINE EndAxes(const backend::ChainEnds &of, std::size_t s)
-      : normal(load_axes(of.normal, s)), along(load_axes(of.along, s)),
-        axis(load_axes(of.axis, s)) {}
-};
+using EndAxes = ChainEndAxes<Lanes>;
+HWY_INLINE EndAxes load_end(const backend::ChainEnds &of, std::size_t s) {
+  return {load_axes(of.normal, s), load_axes(of.along, s), load_axes(of.axis, s)};
+}
 
 /// The blocks of one run for one pose. Their sums are added up in floats, by lanes, until the loop
 /// is `done`.
@@ -90,7 +88,8 @@ private:
     const FloatTag d;
     const backend::ChainBlock &at = data_.blocks[block];
     for (std::size_t s = 0; s < backend::lanes; s += hn::Lanes(d)) {
-      const EndAxes a(is_reversed ? at.q : at.p, s), b(is_reversed ? at.p : at.q, s);
+      const EndAxes a = load_end(is_reversed ? at.q : at.p, s),
+                    b = load_end(is_reversed ? at.p : at.q, s);
       const auto end_a = chain_end_at(a.normal, a.along, observer_),
                  end_b = chain_end_at(b.normal, b.along, sun_);
       const Lanes whole(hn::Load(d, (is_reversed ? at.from_q : at.from_p) + s));
@@ -103,60 +102,42 @@ private:
       weight = select(counts, weight, Lanes(0.0f));
       // Of something that is free with chance `share`; weights of three that agree add up to 1.
       const Lanes doubt = whole * sqrt(max(share * (Lanes(0.99999f) - share), Lanes(0.0f)));
-      add_bands<is_reversed>(k, s, a, b, end_a, end_b, weight, select(counts, doubt, Lanes(0.0f)));
+      add_bands<is_reversed>(k, s, chain_at(a, b, end_a, end_b, sun_, observer_, plane_), weight,
+                             select(counts, doubt, Lanes(0.0f)));
     }
   }
 
   template <bool is_reversed>
-  HWY_INLINE void add_bands(std::size_t k, std::size_t s, const EndAxes &a, const EndAxes &b,
-                            const ChainEndAt<Lanes> &end_a, const ChainEndAt<Lanes> &end_b,
-                            Lanes weight, Lanes doubt) {
+  HWY_INLINE void add_bands(std::size_t k, std::size_t s, const ChainAt<Lanes> &at, Lanes weight,
+                            Lanes doubt) {
     const std::uint32_t kind_a = is_reversed ? run_.kind_q : run_.kind_p,
                         kind_b = is_reversed ? run_.kind_p : run_.kind_q;
-    const auto turn = turn_at_sun(b.along, b.axis, sun_);
-    const auto turns = turns_at_observer(a.normal, a.along, a.axis, observer_, plane_);
-    const auto straight = beam_turn(b.axis, a.axis, b.along);
     Lanes lobe_a(0.0f), lobe_b(0.0f);
     for (std::size_t band = 0; band < bands_; ++band) {
       const auto &of_a = surface(kind_a, band), &of_b = surface(kind_b, band);
       if (of_a.has_lobe && (band == 0 || !of_a.is_lobe_of_first))
-        lobe_a = chain_lobe(of_a.lobe, end_a);
+        lobe_a = chain_lobe(of_a.lobe, at.seen);
       if (of_b.has_lobe && (band == 0 || !of_b.is_lobe_of_first))
-        lobe_b = chain_lobe(of_b.lobe, end_b);
-      const auto entered = chain_entered(of_b, lobe_b, end_b, turn);
+        lobe_b = chain_lobe(of_b.lobe, at.lit);
       const auto pass = [&](const Beam<Lanes> &light) HWY_ATTR {
-        return run_.is_straight ? turned(light, straight) : between<is_reversed>(k, band, s, light);
+        return run_.is_straight ? turned(light, at.straight)
+                                : between<is_reversed>(k, band, s, light);
       };
-      const auto in = pass(entered.whole);
-      auto to_lobe = in;
-      if (run_.is_without_lobes)
-        to_lobe =
-            pass(Beam<Lanes>{entered.whole.i - entered.lobe.i, entered.whole.q - entered.lobe.q,
-                             entered.whole.u - entered.lobe.u, entered.whole.v});
-      const auto light = chain_left(of_a, lobe_a, end_a, turns, in, to_lobe);
+      const auto light = chain_carried(of_a, of_b, lobe_a, lobe_b, at, run_.is_without_lobes, pass);
       put(band, s, light, weight);
       if (band_ + band == 0 && !out_.notes.empty())
         note(run_.first + k, s, light.i * doubt, light.i * weight);
     }
   }
 
-  /// Light carried through what lies between; from behind by the transposed matrix with the signs
-  /// of U, by reciprocity.
   template <bool is_reversed>
   HWY_INLINE Beam<Lanes> between(std::size_t k, std::size_t band, std::size_t s,
                                  const Beam<Lanes> &light) const {
     const FloatTag d;
     const backend::ChainMatrix &m = data_.matrices[run_.matrix + k * data_.bands + band_ + band];
-    const auto entry = [&](std::size_t row, std::size_t column) HWY_ATTR {
-      return Lanes(hn::Load(d, m.m[is_reversed ? 4 * column + row : 4 * row + column] + s));
-    };
-    const Lanes u = is_reversed ? -light.u : light.u;
-    const auto row = [&](std::size_t r) HWY_ATTR {
-      return entry(r, 0) * light.i + entry(r, 1) * light.q + entry(r, 2) * u +
-             entry(r, 3) * light.v;
-    };
-    const Lanes out_u = row(2);
-    return {row(0), row(1), is_reversed ? -out_u : out_u, row(3)};
+    const auto entry = [&](std::size_t row, std::size_t column)
+                           HWY_ATTR { return Lanes(hn::Load(d, m.m[4 * row + column] + s)); };
+    return chain_between(entry, is_reversed, light);
   }
 
   static HWY_INLINE void add_to(float *to, Lanes x) {

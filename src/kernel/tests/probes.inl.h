@@ -180,6 +180,14 @@ template <class R, class Put> UMOV_KERNEL void probe_beam(const Beam<R> &beam, c
   put(beam.u);
   put(beam.v);
 }
+/// What lies between the ends of a chain that is taken from behind.
+template <class R> struct ProbeBetween {
+  R x;
+  UMOV_KERNEL R operator()(std::uint32_t row, std::uint32_t column) const {
+    return x * R(0.125f * static_cast<float>(1 + row)) - R(0.25f * static_cast<float>(column));
+  }
+  UMOV_KERNEL Beam<R> operator()(Beam<R> light) const { return chain_between(*this, true, light); }
+};
 /// Sun and observer on both sides of the normal, a chain that leans by x from it.
 template <class R, class T, class Put> UMOV_KERNEL void probe_chain_end(R x, const Put &put) {
   const Triple<R> normal{R(0), R(0), R(1)}, sun{R(0.6), R(0), R(0.8)},
@@ -205,6 +213,12 @@ template <class R, class T, class Put> UMOV_KERNEL void probe_chain_end(R x, con
     probe_beam(chain_left(surface, chain_lobe(lobe, out), out,
                           turns_at_observer(normal, along, axis, seen, plane), entered.whole,
                           entered.lobe),
+               put);
+    const ChainEndAxes<R> end{normal, along, axis};
+    const auto whole = chain_at(end, end, out, in, sun, seen, plane);
+    probe_beam(turned(entered.whole, whole.straight), put);
+    probe_beam(chain_carried(surface, surface, chain_lobe(lobe, out), chain_lobe(lobe, in), whole,
+                             true, ProbeBetween<R>{x}),
                put);
   }
 }
