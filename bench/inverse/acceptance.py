@@ -3,20 +3,25 @@
 just what the search is told (coverage.py): photons, floor, zero points. Materials are taken for right unless the options say otherwise.
 Prints a line a curve, then the summary.
 
-usage: acceptance.py OBJECT TRIALS [--snr 20] [--seed 1] [--floor 0.005] [--first TRIAL] [--third 0|1|2] [--clouds] [--umov PATH] [--work DIR] [options of umov invert]
+usage: acceptance.py OBJECT TRIALS [--snr 20] [--seed 1] [--floor 0.005] [--first TRIAL] [--third 0|1|2] [--clouds] [--case-r] [--umov PATH] [--work DIR] [options of umov invert]
 OBJECT: as blind.py has them. --third: 40 epochs in that third of the pass instead of one every 12 s of all of it. --clouds: the air of every epoch lets through
-another part (normal in ln, a third), which is free in the fit.
+another part (normal in ln, a third), which is free in the fit. --case-r: the pass of case_r.py in 40 epochs, noise of photons alone, and S/N of the I (550 nm) that half of
+all attitudes and epochs exceed, not of the mean I of each curve, of which a glint is the larger part. Seconds are those of the processor.
 missed: the truth itself fits better than the best mode by more than 2 in chi-square (with the gains that the data were made with, so it fits a little better still)."""
 import math
 import random
+import resource
 import statistics
 import typing
 
 import blind
+import case_r
 import coverage
 
 LIT_S = (5 * 3600 + 8 * 60, 5 * 3600 + 14 * 60)  # when the body of the pass of blind.py is seen
 CLOUDS_SD = 0.33
+MANY = 100  # attitudes that stand for all
+EXACT = 1e-6  # a zero point that is known
 
 
 class Answer(typing.NamedTuple):
@@ -27,7 +32,7 @@ class Answer(typing.NamedTuple):
     share: float
     is_missed: bool
     is_sure: bool
-    seconds: float
+    seconds: float  # of the processor
 
 
 def behind_clouds(rows, rng):
@@ -35,7 +40,19 @@ def behind_clouds(rows, rng):
     return [{**row, "I": float(row["I"]) * part[row["time_utc"]], "intensity": float(row["intensity"]) * part[row["time_utc"]]} for row in rows]
 
 
-def span_of(third):
+def typical_light(o, work, meshes):
+    """The I that half of many attitudes and epochs exceed."""
+    rng = random.Random(f"{o.seed} typical")
+    lit = []
+    for trial in range(MANY):
+        rows = blind.make_curve(o, work, meshes, trial, blind.inertial(blind.random_attitude(rng)), case_r.STEP_S, rng, case_r.SPAN)
+        lit += [float(row["intensity"]) for row in rows if row["band"] == "nm:550"]
+    return statistics.median(lit)
+
+
+def span_of(third, is_case_r):
+    if is_case_r:
+        return case_r.SPAN, case_r.STEP_S
     if third is None:
         return blind.SPAN, 12
     length = (LIT_S[1] - LIT_S[0]) / 3
@@ -43,15 +60,23 @@ def span_of(third):
     return (coverage.clock(begin), coverage.clock(begin + length - 1)), length / 40
 
 
+def processor_s():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def asked(o, work, meshes, trial):
     rng = random.Random(f"{o.seed} acceptance {o.object} {trial}")
     truth = blind.random_attitude(rng)
-    span, step = span_of(o.third)
+    span, step = span_of(o.third, o.case_r)
     rows = blind.make_curve(o, work, meshes, trial, blind.inertial(truth), step, rng, span)
     if not any(float(row["intensity"]) > 0 for row in rows):
         return None  # no light at all: nothing was seen
-    chi2 = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, o.floor, rng, work / "obs.csv")
-    verdict, seconds = blind.asked(o, work, "pose", *(["--clouds"] if o.clouds else []))
+    chi2 = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, o.floor, rng, work / "obs.csv",
+                             EXACT if o.case_r else coverage.ZERO_POINT_SD, o.typical)
+    began = processor_s()
+    verdict, _ = blind.asked(o, work, "pose", *(["--clouds"] if o.clouds else []))
+    seconds = processor_s() - began
     same = blind.twins(truth, verdict["symmetries"])
     off = [min(blind.apart(t, m["q"]) for t in same) for m in verdict["modes"]]
     out = Answer(off[0], min(off), len(off), blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"],
@@ -67,10 +92,17 @@ def main():
     parser = coverage.parser_of("trials", snr=20, floor=0.005)
     parser.add_argument("--third", type=int, choices=(0, 1, 2))
     parser.add_argument("--clouds", action="store_true")
+    parser.add_argument("--case-r", action="store_true")
     o, work = coverage.told(parser)
+    o.typical = None
+    if o.case_r:
+        o.floor, o.scenario = 0, case_r.scenario(blind.SCENARIO, work)
+        o.rest = [*coverage.KNOWN, "--floor", 0, "--zero-point-sd", EXACT, "--largest-floor", 0, *o.rest[len(coverage.KNOWN) + 2:]]
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
         blind.make_mesh(o.umov, words, mesh)
+    if o.case_r:
+        o.typical = typical_light(o, work, meshes)
     answers = []
     trial = o.first
     while len(answers) < o.trials:

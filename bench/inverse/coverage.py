@@ -17,7 +17,7 @@ import typing
 import blind
 
 KNOWN = ["--slope-sd", 0, "--reflectance-sd", 0, "--haze-sd", 0]
-ZERO_POINT_SD, OF_MEDIAN = 0.02, 0.01  # what umov invert takes them for
+ZERO_POINT_SD, OF_MEDIAN = 0.02, 0.01  # what umov invert takes them for; of the median half of the floor at most
 DAY, FIRST_S, LAST_S = "2018-01-21", 5 * 3600 + 8 * 60, 5 * 3600 + 15 * 60  # of the pass of blind.py
 
 
@@ -32,23 +32,24 @@ def arc(rng):
     return begin, begin + (epochs - 0.5) * step, step
 
 
-def observed(rows, snr, floor, rng, path):
-    """A table as an observer has it whose model is wrong by `floor`: S/N is that of the mean I, dark epochs stand with their noise. Returns the chi-square
-    of the truth with the gains that it was made with (equation 3 of docs/theory/inverse.md)."""
+def observed(rows, snr, floor, rng, path, zero_point_sd=ZERO_POINT_SD, typical=None):
+    """A table as an observer has it whose model is wrong by `floor`: S/N is that of the mean I of a band, or of I where it is `typical`; dark epochs stand with their noise.
+    Returns the chi-square of the truth with the gains that it was made with (equation 3 of docs/theory/inverse.md)."""
     lit = [r for r in rows if float(r["intensity"]) > 0]
     unit = {r["band"]: 3.1 * float(r["I"]) / float(r["intensity"]) for r in lit}  # of what is dark: of another epoch
-    mean = {band: statistics.mean(float(r["intensity"]) for r in rows if r["band"] == band) for band in sorted(unit)}
+    of_median = min(OF_MEDIAN, floor / 2)
+    mean = {band: typical or statistics.mean(float(r["intensity"]) for r in rows if r["band"] == band) for band in sorted(unit)}
     median = statistics.median(float(r["intensity"]) for r in rows if r["band"] in unit)
-    gain = {band: 1 + ZERO_POINT_SD * rng.gauss(0, 1) for band in mean}
-    chi2 = sum(((g - 1) / ZERO_POINT_SD) ** 2 for g in gain.values())
+    gain = {band: 1 + zero_point_sd * rng.gauss(0, 1) for band in mean}
+    chi2 = sum(((g - 1) / zero_point_sd) ** 2 for g in gain.values())
     out = ["# pol_frame: equatorial", "time_utc,band,flux,flux_err,q,u,q_err,u_err"]
     for r in (r for r in rows if r["band"] in unit):
         true, m, scale = float(r["intensity"]), mean[r["band"]], unit[r["band"]]
         if true > 0:
             scale = 3.1 * float(r["I"]) / true
         sd = math.sqrt((0.8 * true * m + 0.2 * m * m) / snr**2)
-        seen = gain[r["band"]] * (true * (1 + floor * rng.gauss(0, 1)) + OF_MEDIAN * median * rng.gauss(0, 1)) + sd * rng.gauss(0, 1)
-        chi2 += (seen - gain[r["band"]] * true) ** 2 / (sd**2 + (floor * seen) ** 2 + (OF_MEDIAN * median) ** 2)
+        seen = gain[r["band"]] * (true * (1 + floor * rng.gauss(0, 1)) + of_median * median * rng.gauss(0, 1)) + sd * rng.gauss(0, 1)
+        chi2 += (seen - gain[r["band"]] * true) ** 2 / (sd**2 + (floor * seen) ** 2 + (of_median * median) ** 2)
         cells = [r["time_utc"], r["band"], f"{scale * seen:.6e}", f"{scale * sd:.6e}", "", "", "", ""]
         if true > 3 * sd and r["q"]:
             e = math.sqrt(2) * sd / true

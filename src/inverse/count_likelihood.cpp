@@ -80,7 +80,7 @@ void CountLikelihood::whiten_set(const Set &set, const ModelLight &model, double
     const double effects[terms] = {
         mean * std::sqrt(floor * floor + clouds * clouds + flicker * flicker),
         count.by_q * in_i * of_q, count.by_u * in_i * of_q,
-        count.by_i * errors_.floor_median * median_i_, count.by_i * width};
+        count.by_i * errors_.of_median() * median_i_, count.by_i * width};
     std::ranges::copy(effects, common.begin() + static_cast<std::ptrdiff_t>(a * terms));
     variance[a] =
         count.excess2 * std::max(mean + count.sky, least_electrons) + count.fixed_variance;

@@ -26,8 +26,8 @@ std::size_t level_of(double error) {
 CurveErrors of_table(CurveErrors errors, double table) {
   constexpr double q_error = 0.01, dim = 3, glints = 0.05;
   errors.floor_q = std::hypot(errors.of_q(), q_error);
+  errors.floor_median = std::hypot(errors.of_median(), table / dim);
   errors.floor = std::hypot(errors.floor, table);
-  errors.floor_median = std::hypot(errors.floor_median, table / dim);
   errors.outlier_share = std::max(errors.outlier_share, glints);
   return errors;
 }
@@ -65,8 +65,8 @@ CurveErrors of_recoloured(CurveErrors errors) {
 CurveErrors of_kin(CurveErrors errors) {
   constexpr double off = 0.25, off_median = 0.1, q_off = 0.03;
   errors.floor_q = std::hypot(errors.of_q(), q_off);
+  errors.floor_median = std::hypot(errors.of_median(), off_median);
   errors.floor = std::hypot(errors.floor, off);
-  errors.floor_median = std::hypot(errors.floor_median, off_median);
   return errors;
 }
 

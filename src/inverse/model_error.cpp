@@ -10,12 +10,14 @@ namespace {
 /// A larger floor takes its share of the median and of q and u along, as long as it says more of
 /// bright light than of faint.
 CurveErrors with_floor(CurveErrors errors, double floor) {
-  const double times = errors.floor > 0 ? floor / errors.floor : 1;
-  if (times > 1) {
-    errors.floor_median =
-        std::max(errors.floor_median, std::min(errors.floor_median * times, floor / 2));
+  const double known = errors.of_median();
+  if (errors.floor > 0 && floor > errors.floor) {
+    const double times = floor / errors.floor;
+    errors.floor_median = std::max(known, std::min(known * times, floor / 2));
     if (errors.floor_q >= 0)
       errors.floor_q *= times;
+  } else if (errors.floor > 0) {
+    errors.floor_median = known; // of a floor of 0 it goes with the new one
   }
   errors.floor = floor;
   return errors;

@@ -8,6 +8,7 @@
 #include <umov/core/parallel.h>
 #include <umov/core/random.h>
 #include <umov/inverse/attitude_grid.h>
+#include <umov/light/poses.h>
 
 namespace umov::inverse {
 namespace {
@@ -81,14 +82,6 @@ double distance_of(const std::vector<Particle> &draws, std::size_t asked, unsign
   return *middle;
 }
 
-/// A rotation of a run's own, alike to all others (Shoemake 1992, Graphics Gems III, 124).
-Quaternion any_rotation(std::uint64_t seed, std::uint32_t stream) {
-  const auto u = uniform4(seed, stream, 0);
-  const double a = std::sqrt(1 - u[0]), b = std::sqrt(u[0]);
-  return {a * std::sin(2 * pi * u[1]), a * std::cos(2 * pi * u[1]), b * std::sin(2 * pi * u[2]),
-          b * std::cos(2 * pi * u[2])};
-}
-
 std::vector<Turning> turnings_of(const std::vector<Particle> &draws) {
   std::vector<Turning> out;
   out.reserve(draws.size());
@@ -115,7 +108,7 @@ Samples ParticleRun::samples() {
 }
 
 bool ParticleRun::begin() {
-  const Quaternion by = any_rotation(options_.seed, 0x726f7400u + of_run_);
+  const Quaternion by = random_rotation(options_.seed, 0x726f7400u + of_run_, 0);
   std::vector<Turning> turnings;
   for (const Quaternion &q : attitude_grid(crowd_.first))
     turnings.push_back({of_run_ == 0 ? q : product(by, q), {}});

@@ -15,8 +15,8 @@ namespace {
 
 /// The nearest node is up to 4.5 deg off, and the nearest attitude as far again.
 CurveErrors rough(CurveErrors errors) {
+  errors.floor_median = std::hypot(errors.of_median(), 0.15);
   errors.floor = std::hypot(errors.floor, 0.35);
-  errors.floor_median = std::hypot(errors.floor_median, 0.15);
   errors.floor_q = 0.06;
   errors.outlier_share = 0;
   return errors;

@@ -11,7 +11,7 @@ SampleErrors errors_of(const ObservedSample &sample, const CurveErrors &errors, 
   // A gain per epoch takes no zero points beside it: they are counted as errors of their own.
   const double part =
       errors.has_clouds ? std::hypot(errors.floor, errors.zero_point_sd) : errors.floor;
-  const double base = errors.floor_median * median_i;
+  const double base = errors.of_median() * median_i;
   const double of_model = std::max(part, best_relative) * std::max(0.0, sample.i);
   const double variance = sample.i_sd * sample.i_sd + of_model * of_model + base * base;
   if (!std::isnan(sample.i) && variance > 0) {

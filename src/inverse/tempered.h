@@ -24,8 +24,8 @@ inline double mean_of_i(const ObservedCurve &curve) {
 /// light where there should be none. The floor forgives outliers too.
 inline CurveErrors tempered(CurveErrors errors, const ObservedCurve &curve, double floor = 0.25) {
   errors.floor_q = std::hypot(errors.of_q(), floor / 2);
+  errors.floor_median = std::hypot(errors.of_median(), floor / 2.5);
   errors.floor = std::hypot(errors.floor, floor);
-  errors.floor_median = std::hypot(errors.floor_median, floor / 2.5);
   errors.median_i =
       std::max(errors.median_i > 0 ? errors.median_i : median_of_i(curve), mean_of_i(curve));
   errors.outlier_share = 0;

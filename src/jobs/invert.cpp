@@ -71,7 +71,7 @@ std::string text_of(const InvertRequest &request) {
   return fmt::format("grid {} method {} old {}; errors {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} "
                      "{:.17g} {:.17g} {}; materials {:.17g} {:.17g} {:.17g} floor {:.17g}",
                      request.grid, name_of(request.method), request.allow_old_elements, e.floor,
-                     e.floor_q, e.floor_median, e.zero_point_sd, e.scale_sd, e.has_clouds,
+                     e.floor_q, e.of_median(), e.zero_point_sd, e.scale_sd, e.has_clouds,
                      e.outlier_share, e.outlier_factor, e.has_polarization, request.materials.slope,
                      request.materials.reflectance, request.materials.haze, request.largest_floor);
 }

@@ -20,9 +20,10 @@ struct GainSums;
 
 /// What is not known beside the light itself.
 struct CurveErrors {
-  double floor = 0.02;         ///< error of the model, in parts of I; half of it for q and u
-  double floor_q = -1;         ///< of q and u, if it is not that half; below 0: it is
-  double floor_median = 0.01;  ///< more of it, in parts of the median I
+  double floor = 0.02; ///< error of the model, in parts of I; half of it for q and u
+  double floor_q = -1; ///< of q and u, if it is not that half; below 0: it is
+  /// More of it, in parts of the median I; below 0: 1 %, or half of `floor` where that is less.
+  double floor_median = -1;
   double median_i = 0;         ///< that median; 0: of the curve's own samples
   double zero_point_sd = 0.02; ///< of each band's zero point, relative
   double scale_sd = 0;         ///< of the common scale, relative; 0: any scale
@@ -32,6 +33,11 @@ struct CurveErrors {
   bool has_polarization = true; ///< q and u are used where they are measured
   /// Error of the model in q and u.
   [[nodiscard]] double of_q() const { return floor_q < 0 ? floor / 2 : floor_q; }
+  /// More of it, in parts of the median I: a model that is right is right about faint light too.
+  [[nodiscard]] double of_median() const {
+    constexpr double usual = 0.01;
+    return floor_median >= 0 ? floor_median : floor < 2 * usual ? floor / 2 : usual;
+  }
 };
 
 /// No measurement is taken for better than this part of I, whatever its errors say: what is left of

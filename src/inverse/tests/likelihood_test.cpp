@@ -44,6 +44,24 @@ TEST(CurveLikelihood, FindsTheScale) {
   EXPECT_EQ(likelihood.measurements(), 20u);
 }
 
+TEST(CurveLikelihood, AModelThatIsRightIsRightAboutFaintLight) {
+  const auto light = model_light();
+  const std::vector<double> none(20, 0);
+  auto other = light;
+  other[3] *= 1.1;
+  const auto chi2 = [&](double floor, double of_median) {
+    CurveErrors errors;
+    errors.floor = floor;
+    errors.floor_median = of_median;
+    return CurveLikelihood(sample(light, {1, 1}), errors).compare({other, none, none}).chi2;
+  };
+  constexpr double not_said = -1;
+  EXPECT_EQ(chi2(0, not_said), chi2(0, 0)); // errors of the data alone
+  EXPECT_EQ(chi2(0.005, not_said), chi2(0.005, 0.0025));
+  EXPECT_EQ(chi2(0.02, not_said), chi2(0.02, 0.01));
+  EXPECT_EQ(chi2(0.07, not_said), chi2(0.07, 0.01));
+}
+
 /// Least of sum ((d - g_b m)/s)^2 + sum ((g_b - s0)/(z s1))^2 over g_a, g_b and s0 by brute force,
 /// s1 being the scale without zero points: the definition, minimised without its algebra.
 double least_chi2(const ObservedCurve &curve, const std::vector<double> &m, double z) {
