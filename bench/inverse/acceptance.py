@@ -27,6 +27,7 @@ EXACT = 1e-6  # a zero point that is known
 class Answer(typing.NamedTuple):
     best: float  # from the truth [deg]
     nearest: float
+    told: float  # root of the mean square that the covariance of that mode says [deg]
     modes: int
     is_held: bool
     share: float
@@ -65,6 +66,11 @@ def processor_s():
     return used.ru_utime + used.ru_stime
 
 
+def told_deg(path, mode):
+    row = blind.table_rows(path)[mode]
+    return math.degrees(math.sqrt(sum(float(row[f"cov_{k}{k}"]) for k in "xyz")))
+
+
 def asked(o, work, meshes, trial):
     rng = random.Random(f"{o.seed} acceptance {o.object} {trial}")
     truth = blind.random_attitude(rng)
@@ -79,10 +85,11 @@ def asked(o, work, meshes, trial):
     seconds = processor_s() - began
     same = blind.twins(truth, verdict["symmetries"])
     off = [min(blind.apart(t, m["q"]) for t in same) for m in verdict["modes"]]
-    out = Answer(off[0], min(off), len(off), blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"],
+    told = told_deg(work / "answer/modes.ecsv", off.index(min(off)))
+    out = Answer(off[0], min(off), told, len(off), blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"],
                  not o.clouds and verdict["chi2"] > chi2 + 2, verdict["verdict"] == "determined", seconds)
     phases = [float(row["phase_angle"]) for row in rows]
-    print(f"{o.object} {trial}: best {out.best:.3f}, nearest {out.nearest:.3f} deg of {out.modes} modes, {'in' if out.is_held else 'OUT'}, set {100 * out.share:.2g} %, "
+    print(f"{o.object} {trial}: best {out.best:.3f}, nearest {out.nearest:.3f} deg (told {out.told:.3f}) of {out.modes} modes, {'in' if out.is_held else 'OUT'}, set {100 * out.share:.2g} %, "
           f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, truth's {chi2:.1f}{', MISSED' if out.is_missed else ''}, {verdict['verdict']}, floor {verdict['floor']:.3f}, {len(rows) // 3} epochs, "
           f"phase {min(phases):.0f}-{max(phases):.0f}, {seconds:.1f} s", flush=True)
     return out
@@ -118,7 +125,7 @@ def tell(o, answers):
     low, high = coverage.interval(n, held)
     sure = [a for a in answers if a.is_sure]
     print(f"{o.object}, S/N {o.snr:g}, seed {o.seed}, {n} curves: best < 5 deg {sum(a.best < 5 for a in answers) / n:.2f}, nearest mode < 5 deg {sum(a.nearest < 5 for a in answers) / n:.2f}; "
-          f"median error of the best {statistics.median(a.best for a in answers):.3f} deg, of the nearest {statistics.median(a.nearest for a in answers):.3f}; modes {statistics.median(a.modes for a in answers):g}; "
+          f"median error of the best {statistics.median(a.best for a in answers):.3f} deg, of the nearest {statistics.median(a.nearest for a in answers):.3f} (told {statistics.median(a.told for a in answers):.3f}); modes {statistics.median(a.modes for a in answers):g}; "
           f"held {held} ({low:.3f} to {high:.3f}) in sets of {100 * statistics.median(a.share for a in answers):.2g} %; missed {sum(a.is_missed for a in answers)}; "
           f"determined {len(sure)}, of these more than 5 deg off {sum(a.best > 5 for a in sure)}; {statistics.median(a.seconds for a in answers):.1f} s")
 

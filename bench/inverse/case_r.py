@@ -1,5 +1,5 @@
 """The pass that goals of accuracy name: 480 s of a circular orbit 700 km high, 14.3 deg beside the site's zenith at its middle, the Sun 20.4 deg below the horizon, phase angles
-from 68 to 148 deg. Directions to the Sun are good to .01 deg, precession (.25 deg) is left out: of what the pass is like, not of any orbit."""
+from 68 to 148 deg, 40 epochs of which the first is in the Earth's shadow. Directions to the Sun are good to .01 deg, precession (.25 deg) is left out: of what the pass is like, not of any orbit."""
 import math
 
 from coverage import clock
@@ -8,8 +8,7 @@ EARTH_KM, HEIGHT_KM, GM = 6378.0, 700.0, 398600.4
 BESIDE_RAD, SUN = 0.25, (-0.35, 0.85, 0.40)  # the Sun along zenith, flight and what is left
 MIDDLE_S, HALF_S, EPOCHS = 5 * 3600 + 12 * 60, 240, 40  # of 2018-01-21
 STEP_S = 2 * HALF_S / (EPOCHS - 1)
-SPAN = (clock(MIDDLE_S - HALF_S - STEP_S), clock(MIDDLE_S + HALF_S + 1))
-# The first epoch of a span is not lit where an orbit is read from a file: it begins one earlier.
+SPAN = (clock(MIDDLE_S - HALF_S), clock(MIDDLE_S + HALF_S + 1))
 DAYS = 6594.5 + MIDDLE_S / 86400  # since J2000
 
 

@@ -64,7 +64,11 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
   lit.accuracy = std::max(scenario.light.accuracy, std::min(request.errors.floor, coarsest));
   UMOV_ASSIGN(light, PoseLight::make(direct, lit, options, diagnostics, cancel));
   SearchedLight out{std::move(light), {}};
-  if (out.light.model().facts().method == LightMethod::Auto) {
+  // The exact light of a convex body is many times slower than sums without masks: the
+  // search, like that of other bodies, has these.
+  if (request.method == LightMethod::Auto &&
+      (out.light.model().facts().method == LightMethod::Auto ||
+       out.light.model().facts().is_convex)) {
     SignatureRequest rough;
     rough.method = LightMethod::Masks;
     rough.accuracy = lit.accuracy;

@@ -26,7 +26,8 @@ struct FittedBetween {
 /// Light of an object as a search wants it.
 struct SearchedLight {
   PoseLight light;
-  std::optional<PoseLight> masks; ///< for the search, where `light` mends them; else none
+  /// For the search, where `light` mends them or is exact and slow; else none.
+  std::optional<PoseLight> masks;
   std::optional<FittedBetween> between = {}; ///< beside `light`, which is direct
   /// The light of `light` by material, where that is not quite known and can be taken apart.
   std::unique_ptr<LightByPart> parts = {};

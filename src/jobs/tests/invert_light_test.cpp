@@ -1,0 +1,41 @@
+// Light that a search asks for, and that of its last steps.
+
+#include "jobs/invert_light.h"
+
+#include "jobs/tests/white_sphere.h"
+
+#include <umov/light/poses.h>
+
+namespace umov::jobs {
+namespace {
+
+using test::white_sphere_intensity;
+
+class LightOfABall : public test::WhiteSphere {};
+
+TEST_F(LightOfABall, IsSummedFastForTheSearchAndExactAtTheEnd) {
+  Diagnostics diagnostics;
+  const auto ready = prepare_light(scenario(), {}, {}, diagnostics);
+  ASSERT_TRUE(ready) << ready.error().text();
+  EXPECT_EQ(ready->light.model().facts().method, LightMethod::Rays);
+  ASSERT_TRUE(ready->masks);
+  EXPECT_EQ(ready->masks->model().facts().method, LightMethod::Masks);
+  std::vector<Pose> poses;
+  for (std::size_t k = 0; k < 60; ++k)
+    poses.push_back(random_pose(1, k, Angle::degrees(10 + 2 * static_cast<double>(k))));
+  StokesTable quick, last;
+  const Monitor monitor;
+  ASSERT_TRUE(quick_lighting(*ready, 1, monitor)(poses, quick));
+  ASSERT_TRUE(searched_lighting(*ready, 1, monitor)(poses, last));
+  // 1 % of the ball full of light: half of what a search takes the model for; 5000 facets give
+  // .998.
+  const double full = white_sphere_intensity(0);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double expected = white_sphere_intensity(angle_between(poses[k].sun, poses[k].observer));
+    EXPECT_NEAR(quick.i[k], expected, 0.01 * full) << k;
+    EXPECT_NEAR(last.i[k], expected, 0.01 * full) << k;
+  }
+}
+
+} // namespace
+} // namespace umov::jobs
