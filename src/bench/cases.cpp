@@ -184,20 +184,26 @@ std::vector<BenchCase> standard_cases() {
   add_telescope("hst of the library, fast masks", false, false);
   add_telescope("hst of the library, default of signature", true, true);
   add_telescope("hst of the library, default of run", true, false);
-  for (const char *mesh : {"box-wing", "hst"})
-    for (const BetweenMethod between : {BetweenMethod::Paths, BetweenMethod::Chains})
-      for (const std::size_t bands : {1u, 3u})
-        if (between == BetweenMethod::Chains || bands == 1)
-          add(fmt::format("{} between five surfaces, {} band{}, {}", mesh, bands,
-                          bands == 1 ? "" : "s", name_of(between)),
-              [&](BenchCase &c) {
-                c.mesh = mesh;
-                c.bands = bands;
-                c.has_rough_metals = c.is_default_path = true;
-                c.bounces = 5;
-                c.between = between;
-                c.has_errors = false;
-              });
+  const auto add_between = [&](const std::string &mesh, BetweenMethod between, std::size_t bands,
+                               const std::string &set) {
+    add(fmt::format("{} between five surfaces, {} band{}, {}{}", mesh, bands, bands == 1 ? "" : "s",
+                    name_of(between), set == "best" ? "" : ", " + set),
+        [&](BenchCase &c) {
+          c.mesh = mesh;
+          c.bands = bands;
+          c.has_rough_metals = c.is_default_path = true;
+          c.bounces = 5;
+          c.between = between;
+          c.instruction_set = set;
+          c.has_errors = false;
+        });
+  };
+  for (const char *mesh : {"box-wing", "hst"}) {
+    add_between(mesh, BetweenMethod::Paths, 1, "best");
+    for (const std::size_t bands : {1u, 3u})
+      add_between(mesh, BetweenMethod::Chains, bands, "best");
+    add_between(mesh, BetweenMethod::Chains, 1, "avx2");
+  }
   add("agena, fast masks and rays", [](BenchCase &c) { c.mesh = "agena"; });
   add("crumpled, 1,000,000 triangles, clustered", [](BenchCase &c) {
     c.mesh = "foil";
