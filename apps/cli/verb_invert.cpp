@@ -74,7 +74,9 @@ void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
       ->required();
   verb.add_option("-o,--output", o->output, "Output folder");
   verb.add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
-  verb.add_option("--floor", errors.floor, "Error of the model, in parts of I; half of it in q, u")
+  verb.add_option(
+          "--floor", errors.floor,
+          "Error of the model, in parts of I; half of it in q, u and (1 % at most) of the median I")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   verb.add_option("--zero-point-sd", errors.zero_point_sd,

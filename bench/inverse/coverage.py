@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Does the 95 % set hold 95 % of the truths? Short arcs, 8 to 15 epochs somewhere in a pass, of random attitudes, whose data are wrong by just what the
-search is told: photons, the floor (its part of I and half of it in q and u, and 1 % of the median I), zero points of 2 %. Light of the truth by rays on the mesh
+search is told: photons, the floor (its part of I and half of it in q and u, and half of it, 1 % at most, of the median I), zero points of 2 %. Light of the truth by rays on the mesh
 that is fitted, so that nothing else is wrong. Prints one line per curve, then the share of sets that hold the truth, of all and of those with and without dark epochs, with its binomial interval (Clopper & Pearson 1934, 95 %).
 
 usage: coverage.py OBJECT CURVES [--snr 100] [--seed 1] [--floor 0.02] [--first CURVE] [--only CURVE] [--dark EPOCHS] [--umov PATH] [--work DIR] [options of umov invert]

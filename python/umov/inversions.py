@@ -36,7 +36,7 @@ class Fit(NamedTuple):
     """
 
     grid: int = 60_000  #: attitudes that are looked at first, 1000 to 5,000,000
-    floor: float = 0.02  #: error of the model, in parts of I; half of it in q and u
+    floor: float = 0.02  #: error of the model, in parts of I; half of it in q and u and, 1 % at most, of the median I
     zero_point_sd: float = 0.02  #: how well the zero point of each band is known, relative
     scale_sd: float = 0.0  #: how well the absolute brightness is known, relative; 0: not at all
     clouds: bool = False  #: transparency is free at every epoch

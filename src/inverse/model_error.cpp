@@ -17,7 +17,9 @@ CurveErrors with_floor(CurveErrors errors, double floor) {
     if (errors.floor_q >= 0)
       errors.floor_q *= times;
   } else if (errors.floor > 0) {
-    errors.floor_median = known; // of a floor of 0 it goes with the new one
+    errors.floor_median = known;
+  } else if (errors.floor_median < 0) {
+    errors.floor_median = floor / 2; // as of the least floor that is none
   }
   errors.floor = floor;
   return errors;

@@ -13,7 +13,9 @@ SampleErrors errors_of(const ObservedSample &sample, const CurveErrors &errors, 
       errors.has_clouds ? std::hypot(errors.floor, errors.zero_point_sd) : errors.floor;
   const double base = errors.of_median() * median_i;
   const double of_model = std::max(part, best_relative) * std::max(0.0, sample.i);
-  const double variance = sample.i_sd * sample.i_sd + of_model * of_model + base * base;
+  const double told = sample.i_sd * sample.i_sd + of_model * of_model + base * base;
+  // What is dark and has no error, of a model without any, is a measurement all the same.
+  const double least = best_relative * median_i, variance = told > 0 ? told : least * least;
   if (!std::isnan(sample.i) && variance > 0) {
     out.i_variance = variance;
     out.log_variance += std::log(variance);

@@ -62,6 +62,17 @@ TEST(CurveLikelihood, AModelThatIsRightIsRightAboutFaintLight) {
   EXPECT_EQ(chi2(0.07, not_said), chi2(0.07, 0.01));
 }
 
+TEST(CurveLikelihood, WhatIsDarkWithoutAnErrorIsMeasuredByAModelWithoutOne) {
+  const auto light = model_light();
+  const std::vector<double> none(20, 0);
+  ObservedCurve curve = sample(light, {1, 1});
+  curve.samples[3].i = curve.samples[3].i_sd = 0;
+  const CurveLikelihood likelihood(curve, no_floor());
+  EXPECT_EQ(likelihood.measurements(), 20u);
+  // Light where none was seen: no scale but 0 will do, which the other 19 are 1/.05 errors off.
+  EXPECT_NEAR(likelihood.compare({light, none, none}).chi2, 19 / (0.05 * 0.05), 1);
+}
+
 /// Least of sum ((d - g_b m)/s)^2 + sum ((g_b - s0)/(z s1))^2 over g_a, g_b and s0 by brute force,
 /// s1 being the scale without zero points: the definition, minimised without its algebra.
 double least_chi2(const ObservedCurve &curve, const std::vector<double> &m, double z) {

@@ -23,10 +23,15 @@ TEST_F(LightOfABall, IsSummedFastForTheSearchAndExactAtTheEnd) {
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < 60; ++k)
     poses.push_back(random_pose(1, k, Angle::degrees(10 + 2 * static_cast<double>(k))));
-  StokesTable quick, last;
+  StokesTable quick, last, fast, exact;
   const Monitor monitor;
   ASSERT_TRUE(quick_lighting(*ready, 1, monitor)(poses, quick));
   ASSERT_TRUE(searched_lighting(*ready, 1, monitor)(poses, last));
+  ASSERT_TRUE(lighting_of(*ready->masks, 1, monitor)(poses, fast));
+  ASSERT_TRUE(lighting_of(ready->light, 1, monitor)(poses, exact));
+  EXPECT_EQ(quick.i, fast.i);
+  EXPECT_EQ(last.i, exact.i);
+  EXPECT_NE(fast.i, exact.i);
   // 1 % of the ball full of light: half of what a search takes the model for; 5000 facets give
   // .998.
   const double full = white_sphere_intensity(0);
