@@ -46,7 +46,7 @@ def typical_light(o, work, meshes):
     rng = random.Random(f"{o.seed} typical")
     lit = []
     for trial in range(MANY):
-        rows = blind.make_curve(o, work, meshes, trial, blind.inertial(blind.random_attitude(rng)), case_r.STEP_S, rng, case_r.SPAN)
+        rows = blind.make_curve(o, work, meshes, trial, blind.inertial(blind.random_attitude(rng)), case_r.STEP_S, rng, case_r.SPAN, o.scenario)
         lit += [float(row["intensity"]) for row in rows if row["band"] == "nm:550"]
     return statistics.median(lit)
 
@@ -75,7 +75,7 @@ def asked(o, work, meshes, trial):
     rng = random.Random(f"{o.seed} acceptance {o.object} {trial}")
     truth = blind.random_attitude(rng)
     span, step = span_of(o.third, o.case_r)
-    rows = blind.make_curve(o, work, meshes, trial, blind.inertial(truth), step, rng, span)
+    rows = blind.make_curve(o, work, meshes, trial, blind.inertial(truth), step, rng, span, o.scenario)
     if not any(float(row["intensity"]) > 0 for row in rows):
         return None  # no light at all: nothing was seen
     chi2 = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, o.floor, rng, work / "obs.csv",
@@ -101,10 +101,10 @@ def main():
     parser.add_argument("--clouds", action="store_true")
     parser.add_argument("--case-r", action="store_true")
     o, work = coverage.told(parser)
-    o.typical = None
+    o.typical, o.scenario = None, blind.SCENARIO
     if o.case_r:
         o.floor, o.scenario = 0, case_r.scenario(blind.SCENARIO, work)
-        o.rest = [*coverage.KNOWN, "--floor", 0, "--zero-point-sd", EXACT, "--largest-floor", 0, *o.rest[len(coverage.KNOWN) + 2:]]
+        o.rest = coverage.fit_options(o.floor, ["--zero-point-sd", EXACT, "--largest-floor", 0, *o.given])
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
         blind.make_mesh(o.umov, words, mesh)

@@ -255,12 +255,12 @@ def by_mitsuba(program, mesh, surfaces):
     return Truth(program, mesh, [425, 550, 650], surfaces)
 
 
-def make_curve(o, work, meshes, trial, law, step, rng, span=SPAN):
+def make_curve(o, work, meshes, trial, law, step, rng, span=SPAN, scenario=SCENARIO):
     """Scenarios of truth and fit, and what an observer has of the truth; returns its rows."""
     materials = "\n".join(f'{k} = "{v}"' for k, v in MATERIALS[o.object].items())
     for mesh, method, out, attitude, name in ((meshes[1], "rays", "truth", law, "true.toml"),
                                               (meshes[0], "masks", "fit", inertial([1, 0, 0, 0]), "fit.toml")):
-        text = getattr(o, "scenario", SCENARIO).format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step, materials=materials,
+        text = scenario.format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step, materials=materials,
                                method=method, out=work / out, span=span)
         if o.surfaces > 1 and out == "truth" and not o.truth:
             text = text.replace(f'method = "{method}"', f'method = "{method}"\nbounces = {o.surfaces}')

@@ -94,10 +94,15 @@ def parser_of(count, snr, floor):
     return parser
 
 
+def fit_options(floor, more):
+    """Of umov invert, for materials that are right and a model that is wrong by `floor`."""
+    return [*KNOWN, "--floor", floor, *more]
+
+
 def told(parser):
     """The options, with what blind.py's functions ask for, and the folder to work in; what is not known here goes on to umov invert."""
-    o, rest = parser.parse_known_args()
-    o.rest, o.surfaces, o.wrong, o.truth = [*KNOWN, "--floor", o.floor, *rest], 1, 0, None
+    o, o.given = parser.parse_known_args()
+    o.rest, o.surfaces, o.wrong, o.truth = fit_options(o.floor, o.given), 1, 0, None
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     return o, work

@@ -41,27 +41,33 @@ private:
   }
 };
 
+/// What lies between the ends of a chain.
+struct BetweenEnds {
+  const backend::ChainMatrix *of_bands; ///< null: nothing
+  std::size_t lane;
+  bool is_reversed; ///< the observer at q
+  template <class R>
+  [[nodiscard]] kernel::Beam<R> carried(std::size_t band, const kernel::Beam<R> &light) const {
+    const auto entry = [&](std::uint32_t row, std::uint32_t column) {
+      return static_cast<R>(of_bands[band].m[4 * row + column][lane]);
+    };
+    return kernel::chain_between(entry, is_reversed, light);
+  }
+};
+
 /// A chain from the end that the observer sees to the one that the Sun lights.
 struct GeneralChain {
   GeneralEnd seen, lit;
-  bool is_reversed = false;
-  const backend::ChainMatrix *between = nullptr; ///< of the first band; null: straight
-  std::size_t lane = 0;
+  BetweenEnds between;
 
   /// Light that leaves `lit` into the chain with axis `from`, as it reaches `seen` in axis `to`.
   [[nodiscard]] Light passed(const Light &light, std::size_t band, Vec3<Body> from,
                              Vec3<Body> to) const {
     const Light x = turned(light, from, lit.axis, lit.along);
-    if (between == nullptr)
+    if (between.of_bands == nullptr)
       return turned(turned(x, lit.axis, seen.axis, lit.along), seen.axis, to, -seen.along);
-    const auto &m = between[band].m;
-    const double in[4] = {x.i, x.q, is_reversed ? -x.u : x.u, x.v};
-    double out[4] = {};
-    for (std::size_t r = 0; r < 4; ++r)
-      for (std::size_t c = 0; c < 4; ++c)
-        out[r] += static_cast<double>(m[is_reversed ? 4 * c + r : 4 * r + c][lane]) * in[c];
-    return turned(Light{out[0], out[1], is_reversed ? -out[2] : out[2], out[3]}, seen.axis, to,
-                  -seen.along);
+    const auto out = between.carried<double>(band, {x.i, x.q, x.u, x.v});
+    return turned(Light{out.i, out.q, out.u, out.v}, seen.axis, to, -seen.along);
   }
 
   /// f (n.v) and f (n.l) of both ends about what lies between.
@@ -91,35 +97,29 @@ kernel::ChainEndAxes<float> axes_of(const backend::ChainEnds &end, std::size_t l
 
 /// The same of surfaces that have forms, in single precision: a tenth of the time.
 struct FastChain {
+  BetweenEnds between;
+  const backend::ChainSurface *seen, *lit; ///< of the first band
   kernel::ChainAt<float> at;
-  const backend::ChainSurface *seen, *lit;       ///< of the first band
-  const backend::ChainMatrix *between = nullptr; ///< as above
-  std::size_t lane = 0;
-  bool is_reversed = false, is_without_lobes = false;
 
-  FastChain(const backend::ChainBlock &block, std::size_t of_lane, bool from_behind,
+  FastChain(const backend::ChainBlock &block, const BetweenEnds &with,
             const backend::ChainPose &pose, const backend::ChainSurface *seen_surface,
             const backend::ChainSurface *lit_surface)
-      : seen(seen_surface), lit(lit_surface), lane(of_lane), is_reversed(from_behind) {
-    const auto a = axes_of(from_behind ? block.q : block.p, lane),
-               b = axes_of(from_behind ? block.p : block.q, lane);
+      : between(with), seen(seen_surface), lit(lit_surface) {
+    const auto a = axes_of(with.is_reversed ? block.q : block.p, with.lane),
+               b = axes_of(with.is_reversed ? block.p : block.q, with.lane);
     const Axes sun = axes_of(pose.sun), observer = axes_of(pose.observer);
     at = kernel::chain_at(a, b, kernel::chain_end_at(a.normal, a.along, observer),
                           kernel::chain_end_at(b.normal, b.along, sun), sun, observer,
                           axes_of(pose.plane));
   }
-  [[nodiscard]] Light carried(std::size_t band) const {
+  [[nodiscard]] Light carried(std::size_t band, bool is_without_lobes) const {
     const backend::ChainSurface &of_seen = seen[band], &of_lit = lit[band];
     const auto lobe = [](const backend::ChainSurface &of, const kernel::ChainEndAt<float> &end) {
       return of.has_lobe ? kernel::chain_lobe(of.lobe, end) : 0.0f;
     };
     const auto pass = [&](const kernel::Beam<float> &light) {
-      if (between == nullptr)
-        return kernel::turned(light, at.straight);
-      const auto entry = [&](std::uint32_t row, std::uint32_t column) {
-        return between[band].m[4 * row + column][lane];
-      };
-      return kernel::chain_between(entry, is_reversed, light);
+      return between.of_bands == nullptr ? kernel::turned(light, at.straight)
+                                         : between.carried(band, light);
     };
     const kernel::Beam<float> light = kernel::chain_carried(
         of_seen, of_lit, lobe(of_seen, at.seen), lobe(of_lit, at.lit), at, is_without_lobes, pass);
@@ -148,9 +148,10 @@ void ChainSet::add_one(const OneChain &one, double free, const backend::ChainPos
   if (!faces(one, pose))
     return;
   const backend::ChainBlock &at = drawn_.block[one.block];
-  const backend::ChainMatrix *between =
-      one.run.is_straight ? nullptr
-                          : &matrix_[one.run.matrix + (one.block - one.run.first) * bands_];
+  const BetweenEnds between{one.run.is_straight
+                                ? nullptr
+                                : &matrix_[one.run.matrix + (one.block - one.run.first) * bands_],
+                            one.lane, one.is_reversed};
   const double weight =
       static_cast<double>(one.is_reversed ? at.from_q[one.lane] : at.from_p[one.lane]) * free;
   const auto add = [&](const auto &light_in) {
@@ -164,11 +165,8 @@ void ChainSet::add_one(const OneChain &one, double free, const backend::ChainPos
     const auto forms = [&](bool is_q) {
       return &surfaces_.fast()[(is_q ? one.run.kind_q : one.run.kind_p) * bands_];
     };
-    FastChain chain(at, one.lane, one.is_reversed, pose, forms(one.is_reversed),
-                    forms(!one.is_reversed));
-    chain.between = between;
-    chain.is_without_lobes = one.run.is_without_lobes;
-    add([&](std::size_t band) { return chain.carried(band); });
+    const FastChain chain(at, between, pose, forms(one.is_reversed), forms(!one.is_reversed));
+    add([&](std::size_t band) { return chain.carried(band, one.run.is_without_lobes); });
     return;
   }
   const auto end = [&](bool is_q) {
@@ -179,8 +177,7 @@ void ChainSet::add_one(const OneChain &one, double free, const backend::ChainPos
                       field_of(kind, (is_q ? drawn_.triangle_q : drawn_.triangle_p)[one.at()]),
                       surfaces_.surface(kind)};
   };
-  const GeneralChain chain{end(one.is_reversed), end(!one.is_reversed), one.is_reversed, between,
-                           one.lane};
+  const GeneralChain chain{end(one.is_reversed), end(!one.is_reversed), between};
   const Vec3<Body> sun = vector_of(pose.sun), observer = vector_of(pose.observer),
                    plane = vector_of(pose.plane);
   add([&](std::size_t band) {
