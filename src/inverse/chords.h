@@ -9,8 +9,16 @@
 
 namespace umov::inverse {
 
-/// Attitudes, asked for their chords to others: 2 sin(angle/4), the distance of two unit
-/// quaternions, the nearer of both signs. It grows with the angle and costs no inverse of a sine.
+/// Square of the chord of two attitudes: 2 sin(angle/4), the distance of two unit quaternions, the
+/// nearer of both signs. It grows with the angle and costs no inverse of a sine. By differences, not
+/// by the cosine, whose last digit is an angle of 3e-8.
+inline double chord_square(const Quaternion &p, const Quaternion &q) {
+  const double aw = p.w - q.w, ax = p.x - q.x, ay = p.y - q.y, az = p.z - q.z;
+  const double bw = p.w + q.w, bx = p.x + q.x, by = p.y + q.y, bz = p.z + q.z;
+  return std::min(aw * aw + ax * ax + ay * ay + az * az, bw * bw + bx * bx + by * by + bz * bz);
+}
+
+/// Attitudes, asked for their chords to others.
 class Chords {
 public:
   void add(Quaternion q) {
@@ -21,16 +29,11 @@ public:
   }
   [[nodiscard]] std::size_t size() const { return w_.size(); }
   [[nodiscard]] Quaternion at(std::size_t k) const { return {w_[k], x_[k], y_[k], z_[k]}; }
-  /// Squares of the chords from an attitude to each of them. By differences, not by the cosine,
-  /// whose last digit is an angle of 3e-8.
+  /// Squares of the chords from an attitude to each of them.
   void squares_from(Quaternion q, std::vector<double> &out) const {
     out.resize(size());
-    for (std::size_t k = 0; k < out.size(); ++k) {
-      const double aw = w_[k] - q.w, ax = x_[k] - q.x, ay = y_[k] - q.y, az = z_[k] - q.z;
-      const double bw = w_[k] + q.w, bx = x_[k] + q.x, by = y_[k] + q.y, bz = z_[k] + q.z;
-      out[k] =
-          std::min(aw * aw + ax * ax + ay * ay + az * az, bw * bw + bx * bx + by * by + bz * bz);
-    }
+    for (std::size_t k = 0; k < out.size(); ++k)
+      out[k] = chord_square(at(k), q);
   }
 
 private:

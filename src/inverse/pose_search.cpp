@@ -79,7 +79,7 @@ Result<std::vector<Turning>> search_grid(const CurveModel &model, const SearchOp
     const auto compared = inverse::compare_all(model, likelihood, left, epochs, options.threads);
     if (compared.empty())
       return tl::unexpected(stopped());
-    keep_best(left, compared, std::max(options.grid / rounds[r].part, 10 * options.starts));
+    keep_best(left, compared, std::max(options.grid / rounds[r].part, options.starts * 5 / 2));
     if (epochs.size() == model.curve().epochs.size() && r + 1 < std::size(rounds))
       break; // they were judged by all epochs
   }
@@ -361,6 +361,33 @@ void tell_refined(const SearchOptions &options, std::size_t done) {
     options.progress("refine", done, steps);
 }
 
+/// Fits under errors that shrink: many places at first, by few epochs, and few of those that stay
+/// apart. A basin of one glint is a long valley, and there is one for each flat that could have
+/// mirrored the Sun; how they compare shows where a quarter of I is no longer forgiven. Empty if it
+/// was stopped.
+std::vector<TurningFit> cooled_fits(const CurveModel &model, std::vector<Turning> places,
+                                    std::size_t times, const SearchOptions &options) {
+  struct Round {
+    double floor; ///< of I, that is forgiven
+    std::size_t epochs;
+    int steps;
+    std::size_t left; ///< fits, best first, for the next one
+  };
+  constexpr Round rounds[] = {{0.25, 20, 3, 600}, {0.08, 60, 4, 0}};
+  std::vector<TurningFit> fits;
+  for (const Round &round : rounds) {
+    const auto epochs = inverse::epochs_out_of_step(model.curve().epochs.size(), round.epochs);
+    const CurveLikelihood likelihood(
+        model.curve(), tempered(options.errors, model.curve(), round.floor), epochs);
+    fits = inverse::fit_turnings(model, likelihood, std::move(places), epochs,
+                                 {Freedom::Attitude, round.steps, 0, 0, 2e-3, options.threads});
+    if (fits.empty())
+      break;
+    places = inverse::turnings_of(fits, round.left * times);
+  }
+  return fits;
+}
+
 /// Fixed attitudes that are worth a fit, and the grid that they were found on; best first.
 struct Places {
   std::vector<Turning> judged, best;
@@ -373,15 +400,10 @@ Result<Places> find_places(const SearchModels &models, FoundErrors &errors,
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
   UMOV_ASSIGN(left, search_grid(quick, options));
-  const CurveLikelihood rough(model.curve(), tempered(options.errors, model.curve()));
-  // Many at first, and few of those that stay apart: a basin of one glint is a long valley, and
-  // there is one for each flat that could have mirrored the Sun.
-  const inverse::FitPlan tempered_steps{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};
   const std::size_t times = times_of(model.curve()), most = 80 * times;
   tell_refined(options, 0);
-  const auto fits = inverse::fit_turnings(
-      quick, rough, inverse::spread_out(left, options.starts * times, 5 * degree),
-      epochs_of_first_steps(model), tempered_steps);
+  const auto fits = cooled_fits(
+      quick, inverse::spread_out(left, options.starts * times, 5 * degree), times, options);
   Places out{std::move(left), inverse::turnings_of(fits, most)};
   bool has_changed = false;
   if (fits.empty() || !errors.ask(out.best, has_changed))

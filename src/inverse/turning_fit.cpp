@@ -1,6 +1,8 @@
 #include "inverse/turning_fit.h"
 
 #include "algebra/dense.h"
+#include "inverse/chords.h"
+#include "inverse/neighbours.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +22,7 @@ struct Running {
   double damping = 1e-2;
   int idle = 0;          ///< iterations in a row that gained next to nothing
   bool has_moved = true; ///< since its derivatives were taken
+  bool is_fine = false;  ///< its derivatives are those of close neighbours
   double chi2_at_cut = std::numeric_limits<double>::infinity(); ///< the last
 };
 
@@ -32,35 +35,41 @@ std::vector<Running *> moving(std::vector<Running> &fits) {
   return out;
 }
 
+Neighbours neighbours_of(const Running &one, const FitPlan &plan) {
+  return one.is_fine
+             ? Neighbours::half_widths(one.fit.information, plan.difference_rad)
+             : Neighbours::alike(static_cast<Eigen::Index>(plan.freedom), plan.difference_rad);
+}
+
 /// J^T J and J^T r of all fits by differences of neighbours, lit together.
 bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
                    std::vector<Running *> fits, std::span<const std::size_t> epochs,
                    const FitPlan &plan) {
   std::erase_if(fits, [](const Running *one) { return !one->has_moved; });
-  const auto free = static_cast<Eigen::Index>(plan.freedom);
-  const double span = span_of(model.curve(), epochs), h = plan.difference_rad;
+  const double span = span_of(model.curve(), epochs);
+  std::vector<Neighbours> where;
   std::vector<Turning> near;
   std::vector<std::span<const double>> parts; // from which a whole fit would find the same again
-  for (const Running *one : fits)
-    for (Eigen::Index p = 0; p < free; ++p) {
-      near.push_back(stepped(one->fit.turning, Step::Unit(free, p) * h, span));
+  for (const Running *one : fits) {
+    where.push_back(neighbours_of(*one, plan));
+    for (std::size_t p = 0; p < where.back().count(); ++p) {
+      near.push_back(stepped(one->fit.turning, where.back().step(p), span));
       parts.emplace_back(one->fit.at.off);
     }
+  }
   const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true, parts);
   if (compared.empty() && !near.empty())
     return false;
-  for (std::size_t k = 0; k < fits.size(); ++k) {
+  std::vector<const std::vector<double> *> residuals;
+  for (const Comparison &one : compared)
+    residuals.push_back(&one.residuals);
+  std::span<const std::vector<double> *const> rest(residuals);
+  for (std::size_t k = 0; k < fits.size(); rest = rest.subspan(where[k++].count())) {
     Running &one = *fits[k];
-    const auto rows = static_cast<Eigen::Index>(one.residuals.size());
-    const Residuals r(one.residuals.data(), rows);
-    Eigen::MatrixXd jacobian(rows, free);
-    for (Eigen::Index p = 0; p < free; ++p) {
-      const auto &other =
-          compared[k * static_cast<std::size_t>(free) + static_cast<std::size_t>(p)];
-      jacobian.col(p) = (Residuals(other.residuals.data(), rows) - r) / h;
-    }
+    const Eigen::MatrixXd jacobian = where[k].jacobian(one.residuals, rest.first(where[k].count()));
     one.fit.information = algebra::gram(jacobian);
-    one.gradient = algebra::transposed_times(jacobian, r);
+    one.gradient = algebra::transposed_times(
+        jacobian, Residuals(one.residuals.data(), static_cast<Eigen::Index>(one.residuals.size())));
   }
   return true;
 }
@@ -76,11 +85,18 @@ Step step_of(const Running &one) {
   return length > longest ? Step(step * (longest / length)) : step;
 }
 
+/// The fit goes on by fine derivatives: rough ones creep along a valley, or stand still in it.
+void refine(Running &one) {
+  one.is_fine = one.has_moved = true;
+  one.damping = 1e-5;
+  one.idle = 0;
+}
+
 /// Takes a step that gained, shortens the next if it did not. At the bottom neither gains: a valley
 /// that bends gives little in each step and much in a hundred of them, so that few gains of little
 /// are no end.
 void take(Running &one, const Turning &tried, const Comparison &compared) {
-  constexpr double least = 0.01, stuck = 1e5; // of chi-square; of the damping
+  constexpr double near = 1, least = 0.01, stuck = 1e5; // of chi-square; of the damping
   constexpr int patience = 3;
   const double gain = one.fit.at.chi2 - compared.chi2;
   one.has_moved = gain > 0;
@@ -88,17 +104,23 @@ void take(Running &one, const Turning &tried, const Comparison &compared) {
     one.fit.turning = tried;
     one.fit.at = compared;
     one.residuals = compared.residuals;
-    one.damping = std::max(one.damping / 5, 1e-6);
+    one.damping = std::max(one.damping / 5, 1e-10);
     one.idle = gain < least ? one.idle + 1 : 0;
   } else {
     one.damping *= 6;
   }
-  one.fit.is_converged = one.idle >= patience || !(one.damping < stuck);
+  if (one.is_fine)
+    one.fit.is_converged = one.idle >= patience || !(one.damping < stuck);
+  else if ((one.has_moved && gain < near) || !(one.damping < stuck))
+    refine(one);
 }
 
 /// The same turning, as far as a fit on its way tells.
 bool is_same(const Turning &a, const Turning &b, double span_s) {
   constexpr double near = 5e-3; // [rad]
+  // A step's tilts and turns, one after the other, turn by no more than the three of them.
+  if (chord_square(a.attitude, b.attitude) > chord_square(3 * near))
+    return false;
   const Step step = step_between(a, b, 6, span_s);
   return step.head(3).norm() < near && step.tail(3).norm() < near;
 }
@@ -152,11 +174,12 @@ double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) 
 std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t count,
                                 double apart_rad) {
   std::vector<Turning> out;
+  const double near = chord_square(apart_rad);
   for (const Turning &t : sorted) {
     if (out.size() >= count)
       break;
     if (std::ranges::none_of(out, [&](const Turning &o) {
-          return angle_between(o.attitude, t.attitude) < apart_rad;
+          return chord_square(o.attitude, t.attitude) < near;
         }))
       out.push_back(t);
   }

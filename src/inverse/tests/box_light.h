@@ -101,7 +101,7 @@ inline SearchOptions small() {
   out.errors.floor = 0;
   out.errors.floor_median = 0.001;
   out.grid = 8000; // broad lobes: 12 deg apart is enough
-  out.starts = 60;
+  out.starts = 240;
   out.samples = 600;
   return out;
 }

@@ -46,7 +46,7 @@ TEST(PoseSearch, RanksOfTheTruthAmongSamplesAreEven) {
   std::array<std::array<int, bins>, 2> found{};
   SearchOptions options = small();
   options.grid = 4000;
-  options.starts = 40;
+  options.starts = 160;
   options.samples = 400;
   options.errors.zero_point_sd =
       1e-4; // the data have none: told more, the truth would be too dense
