@@ -361,31 +361,35 @@ void tell_refined(const SearchOptions &options, std::size_t done) {
     options.progress("refine", done, steps);
 }
 
-/// Fits under errors that shrink: many places at first, by few epochs, and few of those that stay
-/// apart. A basin of one glint is a long valley, and there is one for each flat that could have
-/// mirrored the Sun; how they compare shows where a quarter of I is no longer forgiven. Empty if it
-/// was stopped.
-std::vector<TurningFit> cooled_fits(const CurveModel &model, std::vector<Turning> places,
-                                    std::size_t times, const SearchOptions &options) {
+/// Places of fits under errors that shrink: many at first, by few epochs, and few of those that
+/// stay apart. A basin of one glint is a long valley, and there is one for each flat that could have
+/// mirrored the Sun; how they compare shows where a quarter of I is no longer forgiven. Of a model
+/// that is wrong by more than that it does not: each round has places of its own. Empty if it was
+/// stopped.
+std::vector<Turning> cooled_places(const CurveModel &model, std::vector<Turning> from,
+                                   std::size_t times, const SearchOptions &options) {
   struct Round {
     double floor; ///< of I, that is forgiven
     std::size_t epochs;
     int steps;
-    std::size_t left; ///< fits, best first, for the next one
+    std::size_t places, left; ///< fits, best first, that are kept and that go on
   };
-  constexpr Round rounds[] = {{0.25, 20, 3, 600}, {0.08, 60, 4, 0}};
-  std::vector<TurningFit> fits;
+  constexpr Round rounds[] = {{0.25, 20, 3, 30, 600}, {0.08, 60, 4, 60, 0}};
+  std::vector<Turning> out;
   for (const Round &round : rounds) {
     const auto epochs = inverse::epochs_out_of_step(model.curve().epochs.size(), round.epochs);
     const CurveLikelihood likelihood(
         model.curve(), tempered(options.errors, model.curve(), round.floor), epochs);
-    fits = inverse::fit_turnings(model, likelihood, std::move(places), epochs,
-                                 {Freedom::Attitude, round.steps, 0, 0, 2e-3, options.threads});
+    const auto fits =
+        inverse::fit_turnings(model, likelihood, std::move(from), epochs,
+                              {Freedom::Attitude, round.steps, 0, 0, 2e-3, options.threads});
     if (fits.empty())
-      break;
-    places = inverse::turnings_of(fits, round.left * times);
+      return {};
+    const auto kept = inverse::turnings_of(fits, round.places * times);
+    out.insert(out.begin(), kept.begin(), kept.end()); // the best of the last round come first
+    from = inverse::turnings_of(fits, round.left * times);
   }
-  return fits;
+  return out;
 }
 
 /// Fixed attitudes that are worth a fit, and the grid that they were found on; best first.
@@ -400,13 +404,13 @@ Result<Places> find_places(const SearchModels &models, FoundErrors &errors,
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
   UMOV_ASSIGN(left, search_grid(quick, options));
-  const std::size_t times = times_of(model.curve()), most = 80 * times;
+  const std::size_t times = times_of(model.curve());
   tell_refined(options, 0);
-  const auto fits = cooled_fits(
-      quick, inverse::spread_out(left, options.starts * times, 5 * degree), times, options);
-  Places out{std::move(left), inverse::turnings_of(fits, most)};
+  auto best = cooled_places(quick, inverse::spread_out(left, options.starts * times, 5 * degree),
+                            times, options);
+  Places out{std::move(left), std::move(best)};
   bool has_changed = false;
-  if (fits.empty() || !errors.ask(out.best, has_changed))
+  if (out.best.empty() || !errors.ask(out.best, has_changed))
     return tl::unexpected(stopped());
   return std::move(out);
 }

@@ -185,7 +185,7 @@ TEST(PoseSearch, ABodyAtRestThatTakesManyStepsIsNoBodyThatTurns) {
   const Box box;
   const PoseLighting turned_box = [&](std::span<const Pose> poses, StokesTable &out) {
     std::vector<Pose> seen(poses.begin(), poses.end());
-    const double c = std::cos(0.6), s = std::sin(0.6);
+    const double c = std::cos(0.5), s = std::sin(0.5);
     for (Pose &p : seen)
       for (Vec3<Body> *const v : {&p.sun, &p.observer})
         *v = {c * v->x - s * v->y, s * v->x + c * v->y, v->z};
