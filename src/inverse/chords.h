@@ -10,8 +10,8 @@
 namespace umov::inverse {
 
 /// Square of the chord of two attitudes: 2 sin(angle/4), the distance of two unit quaternions, the
-/// nearer of both signs. It grows with the angle and costs no inverse of a sine. By differences, not
-/// by the cosine, whose last digit is an angle of 3e-8.
+/// nearer of both signs. It grows with the angle and costs no inverse of a sine. By differences,
+/// not by the cosine, whose last digit is an angle of 3e-8.
 inline double chord_square(const Quaternion &p, const Quaternion &q) {
   const double aw = p.w - q.w, ax = p.x - q.x, ay = p.y - q.y, az = p.z - q.z;
   const double bw = p.w + q.w, bx = p.x + q.x, by = p.y + q.y, bz = p.z + q.z;

@@ -362,10 +362,10 @@ void tell_refined(const SearchOptions &options, std::size_t done) {
 }
 
 /// Places of fits under errors that shrink: many at first, by few epochs, and few of those that
-/// stay apart. A basin of one glint is a long valley, and there is one for each flat that could have
-/// mirrored the Sun; how they compare shows where a quarter of I is no longer forgiven. Of a model
-/// that is wrong by more than that it does not: each round has places of its own. Empty if it was
-/// stopped.
+/// stay apart. A basin of one glint is a long valley, and there is one for each flat that could
+/// have mirrored the Sun; how they compare shows where a quarter of I is no longer forgiven. Of a
+/// model that is wrong by more than that it does not: each round has places of its own. Empty if it
+/// was stopped.
 std::vector<Turning> cooled_places(const CurveModel &model, std::vector<Turning> from,
                                    std::size_t times, const SearchOptions &options) {
   struct Round {
@@ -378,8 +378,8 @@ std::vector<Turning> cooled_places(const CurveModel &model, std::vector<Turning>
   std::vector<Turning> out;
   for (const Round &round : rounds) {
     const auto epochs = inverse::epochs_out_of_step(model.curve().epochs.size(), round.epochs);
-    const CurveLikelihood likelihood(
-        model.curve(), tempered(options.errors, model.curve(), round.floor), epochs);
+    const CurveLikelihood likelihood(model.curve(),
+                                     tempered(options.errors, model.curve(), round.floor), epochs);
     const auto fits =
         inverse::fit_turnings(model, likelihood, std::move(from), epochs,
                               {Freedom::Attitude, round.steps, 0, 0, 2e-3, options.threads});

@@ -178,9 +178,8 @@ std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t 
   for (const Turning &t : sorted) {
     if (out.size() >= count)
       break;
-    if (std::ranges::none_of(out, [&](const Turning &o) {
-          return chord_square(o.attitude, t.attitude) < near;
-        }))
+    if (std::ranges::none_of(
+            out, [&](const Turning &o) { return chord_square(o.attitude, t.attitude) < near; }))
       out.push_back(t);
   }
   return out;

@@ -42,8 +42,8 @@ struct FitPlan {
   int iterations = 12;
   int cut_after = 0; ///< iterations after which only the best `kept` go on; 0: all
   std::size_t kept = 0;
-  /// Of the derivatives, until steps gain little: masks are steps on a finer scale. From there on half a
-  /// width of its peak in each direction, if that is shorter (`Neighbours`).
+  /// Of the derivatives, until steps gain little: masks are steps on a finer scale. From there on
+  /// half a width of its peak in each direction, if that is shorter (`Neighbours`).
   double difference_rad = 2e-3;
   unsigned threads = 0;
   bool drops_hopeless = false; ///< at each cut: fits that would not come near the best by the end
