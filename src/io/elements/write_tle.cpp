@@ -6,6 +6,7 @@
 #include <map>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
+#include <utility>
 
 namespace umov {
 namespace {
@@ -75,6 +76,34 @@ std::string lines_of(const ElementSet &set) {
   return (set.name.empty() ? "" : set.name + "\n") + with_checksum(first) + with_checksum(second);
 }
 
+/// What the columns of a TLE do not hold of a set; nothing where they hold all.
+std::string beyond_columns(const ElementSet &set) {
+  constexpr int alpha5_max = 339'999;
+  constexpr double exponent_max = 0.999995e9; // five digits and an exponent of one
+  const int number = set.norad_cat_id;
+  const double motion = set.mean_motion / (2 * pi / 1440);
+  if (number > alpha5_max)
+    return fmt::format("catalogue number {} does not fit a TLE, whose five columns end at Z9999 = "
+                       "{}",
+                       number, alpha5_max);
+  if (set.epoch_year < 1957 || set.epoch_year > 2056) // 60 would be read as 1960
+    return fmt::format("the epoch of {} is in {}; the two digits of a TLE's year mean 1957 to 2056",
+                       number, set.epoch_year);
+  if (!(std::abs(set.mean_motion_dot) < 0.999999995)) // the columns begin with the point
+    return fmt::format("the first derivative of the mean motion of {} is {:g} rev/d2; a TLE holds "
+                       "less than 1",
+                       number, set.mean_motion_dot);
+  if (!(motion > 5e-9 && motion < 99.999999995))
+    return fmt::format("the mean motion of {} is {:g} rev/d; a TLE holds 1e-8 to below 100", number,
+                       motion);
+  for (const auto &[what, value] :
+       {std::pair("B*", set.bstar),
+        std::pair("the second derivative of the mean motion", set.mean_motion_ddot)})
+    if (!(std::abs(value) < exponent_max))
+      return fmt::format("{} of {} is {:g}; a TLE holds less than 1e9", what, number, value);
+  return "";
+}
+
 /// Names of the fields in which two sets differ.
 std::vector<const char *> differences(const ElementSet &a, const ElementSet &b) {
   std::vector<const char *> out;
@@ -101,19 +130,10 @@ std::vector<const char *> differences(const ElementSet &a, const ElementSet &b) 
 } // namespace
 
 Result<std::string> tle_of(const std::vector<ElementSet> &sets, Diagnostics &diagnostics) {
-  constexpr int alpha5_max = 339'999;
   std::string out;
   for (const ElementSet &set : sets) {
-    if (set.norad_cat_id > alpha5_max)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("catalogue number {} does not fit a TLE, whose five columns end at "
-                              "Z9999 = {}. Write OMM instead (.json, .xml, .kvn or .csv).",
-                              set.norad_cat_id, alpha5_max));
-    if (!(std::abs(set.mean_motion_dot) < 0.999999995)) // the columns begin with the point
-      return fail(ErrorCode::BadInput,
-                  fmt::format("the first derivative of the mean motion of {} is {:g} rev/d2; a TLE "
-                              "holds less than 1. Write OMM instead (.json, .xml, .kvn or .csv).",
-                              set.norad_cat_id, set.mean_motion_dot));
+    if (const std::string beyond = beyond_columns(set); !beyond.empty())
+      return fail(ErrorCode::BadInput, beyond + ". Write OMM instead (.json, .xml, .kvn or .csv).");
     out += lines_of(set);
   }
   Diagnostics of_own;

@@ -331,6 +331,31 @@ TEST(Elements, ATleSaysWhatItCannotHold) {
     expect_equal(read_text(*write_elements({set}, form, now, said))->front(), set);
 }
 
+// CelesTrak's FAQ: years 57-99 are of 1957-1999, 00-56 of 2000-2056. The mean motion has 11
+// columns, eight of them behind the point; an exponent has one digit.
+TEST(Elements, ATleIsNotWrittenWhereItWouldBeReadAsAnotherOrbit) {
+  const ElementSet good = read_sample("omm.kvn")[0];
+  const auto refusal = [&good](const auto &change) {
+    ElementSet set = good;
+    change(set);
+    Diagnostics said;
+    const auto text = write_elements({set}, ElementsForm::Tle, good.epoch, said);
+    return text ? "" : text.error().message;
+  };
+  EXPECT_EQ(refusal([](ElementSet &set) { set.epoch_year = 2056; }), "");
+  EXPECT_NE(refusal([](ElementSet &set) { set.epoch_year = 2057; }).find("is in 2057; the two"),
+            std::string::npos);
+  EXPECT_NE(refusal([](ElementSet &set) { set.epoch_year = 1956; }).find("1957 to 2056"),
+            std::string::npos);
+  EXPECT_NE(refusal([](ElementSet &set) {
+              set.mean_motion = 100 * 2 * pi / 1440;
+            }).find("is 100 rev/d; a TLE holds 1e-8 to below 100"),
+            std::string::npos);
+  EXPECT_NE(refusal([](ElementSet &set) { set.bstar = -1e12; }).find("B* of"), std::string::npos);
+  EXPECT_NE(refusal([](ElementSet &set) { set.mean_motion_ddot = 1e9; }).find("Write OMM instead"),
+            std::string::npos);
+}
+
 // A Latin-1 byte and an escape sequence: a warning, and every form can be written.
 TEST(Elements, NamesThatAreNotPrintableAreReplacedWithAWarning) {
   std::string text = *read_file(folder + "omm.kvn");
