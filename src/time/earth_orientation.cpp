@@ -66,6 +66,16 @@ bool is_plausible(const Day &day) {
          std::abs(day.dut1_s) <= ut1_s;
 }
 
+/// By how much UT1-UTC grows within a day; a leap second at its end is no part of that.
+double growth_s(const Day &a, const Day &b) {
+  const double change = b.dut1_s - a.dut1_s;
+  return change - std::round(change);
+}
+
+/// The length of the day has been off by up to 4 ms since 1962 (IERS EOP C04). A change of tenths
+/// of a second is a slip, and half of one would be taken for a leap second.
+constexpr double growth_most_s = 0.1;
+
 constexpr const char *expected_form =
     "IERS finals2000A, or columns mjd,x_arcsec,y_arcsec,ut1_utc_s for one day after the other";
 
@@ -93,6 +103,13 @@ Result<Days> parse(std::string_view text, const std::string &name) {
                   fmt::format("MJD {:.0f} with pole {:g}, {:g} arcsec and UT1-UTC {:g} s; {} was "
                               "expected, within 2 arcsec and 1 s",
                               day->mjd, day->x_arcsec, day->y_arcsec, day->dut1_s, expected_form),
+                  place);
+    if (!out.all.empty() && !(std::abs(growth_s(out.all.back(), *day)) <= growth_most_s))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("UT1-UTC goes from {:g} to {:g} s within a day; a change of up to {} "
+                              "s, or of one more where a leap second is, was expected. Correct the "
+                              "line, or take finals2000A of the IERS.",
+                              out.all.back().dut1_s, day->dut1_s, growth_most_s),
                   place);
     out.all.push_back(*day);
   }
@@ -130,16 +147,15 @@ EarthOrientation earth_orientation(Epoch<Utc> time) {
   const double at = mjd(time);
   if (!(at >= days.front().mjd))
     return {0, 0, 0, false};
-  if (at > days.back().mjd)
-    return oriented(days.back(), false);
+  // The last midnight may be that after a leap second, of which the day before knows nothing.
+  if (at >= days.back().mjd)
+    return oriented(days.back(), at == days.back().mjd);
   const auto i = std::min(static_cast<std::size_t>(at - days.front().mjd), days.size() - 2);
   const Day &a = days[i], &b = days[i + 1];
   const double t = at - a.mjd;
   // Across a leap second UT1-UTC jumps by one; within the day before, it does not yet.
-  const double step = std::round(b.dut1_s - a.dut1_s);
   return oriented({at, a.x_arcsec + t * (b.x_arcsec - a.x_arcsec),
-                   a.y_arcsec + t * (b.y_arcsec - a.y_arcsec),
-                   a.dut1_s + t * (b.dut1_s - step - a.dut1_s)},
+                   a.y_arcsec + t * (b.y_arcsec - a.y_arcsec), a.dut1_s + t * growth_s(a, b)},
                   true);
 }
 

@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   fuzz::require(mjd(table.last) > mjd(table.first), "a table has two days or more");
   for (const double day : {mjd(table.first), mjd(table.first) + 0.5, mjd(table.last)}) {
     const EarthOrientation eo = earth_orientation({2400000.5, day});
-    fuzz::require(eo.is_covered && std::abs(eo.dut1_s) <= 1 && std::isfinite(eo.x_p_rad),
+    // A second at midnight is let be, and on it a tenth before a leap second.
+    fuzz::require(eo.is_covered && std::abs(eo.dut1_s) <= 1.1 && std::isfinite(eo.x_p_rad),
                   "a day of the table has a plausible orientation");
   }
   use_built_in_earth_orientation();

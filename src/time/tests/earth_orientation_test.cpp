@@ -61,6 +61,16 @@ TEST_F(OtherEarth, IsReadFromFinals2000AWithItsPredictions) {
               1e-9);
 }
 
+TEST_F(OtherEarth, AtItsLastMidnightALeapSecondHasBeen) {
+  // The first two of the lines above: the table ends as the leap second does.
+  ASSERT_TRUE(use_earth_orientation("57753,0.081400,0.263094,-0.4077601\n"
+                                    "57754,0.080504,0.263145,0.5912821\n",
+                                    "finals"));
+  EXPECT_EQ(earth_orientation(at("2017-01-01T00:00:00Z")).dut1_s, 0.5912821);
+  EXPECT_TRUE(earth_orientation(at("2017-01-01T00:00:00Z")).is_covered);
+  EXPECT_FALSE(earth_orientation(at("2017-01-01T00:00:01Z")).is_covered);
+}
+
 TEST_F(OtherEarth, IsReadFromColumns) {
   ASSERT_TRUE(use_earth_orientation("# by hand\nmjd,x_arcsec,y_arcsec,ut1_utc_s\r\n"
                                     "60000,0.1,0.2,-0.01\r\n60001,0.1,0.2,-0.03\r\n",
@@ -73,13 +83,15 @@ TEST_F(OtherEarth, RefusesWhatIsNoTableAndKeepsTheOldOne) {
   const struct {
     const char *text;
     std::size_t line;
-  } rows[] = {{"", 1},
-              {"hello", 1},
-              {"60000,0.1,0.2,-0.01\n", 1},              // one day
-              {"60000,0.1,0.2,0\n60002,0.1,0.2,0\n", 2}, // a day is missing
-              {"60000,0.1,0.2,0\n60001,0.1,0.2,5\n", 2}, // no UT1-UTC
-              {"60000,0.1,0.2,0\n60001,0.1,x,0\n", 2},   // no number
-              {"60000,0.1,0.2,0\n60001,0.1\n", 2}};      // too few
+  } rows[] = {
+      {"", 1},
+      {"hello", 1},
+      {"60000,0.1,0.2,-0.01\n", 1},               // one day
+      {"60000,0.1,0.2,0\n60002,0.1,0.2,0\n", 2},  // a day is missing
+      {"60000,0.1,0.2,0\n60001,0.1,0.2,5\n", 2},  // no UT1-UTC
+      {"60000,0.1,0.2,0\n60001,0.1,0.2,.6\n", 2}, // neither a day's change nor a leap second
+      {"60000,0.1,0.2,0\n60001,0.1,x,0\n", 2},    // no number
+      {"60000,0.1,0.2,0\n60001,0.1\n", 2}};       // too few
   for (const auto &row : rows) {
     const auto done = use_earth_orientation(row.text, "bad");
     ASSERT_FALSE(done) << row.text;
