@@ -3,6 +3,8 @@
 
 #include "fuzz/target.h"
 
+#include <cmath>
+#include <umov/core/quantity.h>
 #include <umov/io/elements_file.h>
 #include <vector>
 
@@ -41,6 +43,31 @@ inline void check_written(const std::vector<ElementSet> &sets, ElementsForm form
   }
 }
 
+/// What the columns of a TLE take can be read there, to half a unit of their last digit and what
+/// degrees and revolutions a day lose as radians.
+inline void check_written_as_tle(const std::vector<ElementSet> &sets) {
+  Diagnostics diagnostics;
+  const auto written = write_elements(sets, ElementsForm::Tle, {}, diagnostics);
+  if (!is_read(written))
+    return;
+  const auto back = must(read_elements(*written, "written", {}, diagnostics),
+                         "a TLE is written so that it can be read");
+  require(back.size() == sets.size(), "a TLE holds as many sets as were written");
+  constexpr double angle = 0.51e-4 * pi / 180, motion = 0.51e-8 * 2 * pi / 1440;
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    const ElementSet &a = back[k], &b = sets[k];
+    require(a.norad_cat_id == b.norad_cat_id, "a TLE keeps the catalogue number");
+    require(std::abs(a.mean_motion - b.mean_motion) < motion, "a TLE keeps the mean motion");
+    require(std::abs(a.inclination - b.inclination) < angle, "a TLE keeps the inclination");
+    require(std::abs(a.eccentricity - b.eccentricity) < 1.01e-7, "a TLE keeps the eccentricity");
+    require(std::abs(a.mean_motion_dot - b.mean_motion_dot) < 0.51e-8, "a TLE keeps the decay");
+    // Below .1e-9, the least with five digits, B* is written as 0.
+    require(std::abs(a.bstar - b.bstar) <= 0.51e-4 * std::abs(b.bstar) + 1e-10, "a TLE keeps B*");
+    const double off_s = seconds_between(a.epoch, b.epoch);
+    require(std::abs(off_s) < 5e-4, "a TLE keeps the epoch to 0.5 ms");
+  }
+}
+
 /// Reads a text of one form; others are left to their own targets.
 inline void check_elements(std::string_view text, ElementsForm form) {
   if (form_of_elements(text) != form)
@@ -50,8 +77,10 @@ inline void check_elements(std::string_view text, ElementsForm form) {
     TleOptions options;
     options.allow_bad_checksum = options.keep_going = is_lenient;
     const auto sets = read_elements(text, "input", options, diagnostics);
-    if (is_read(sets))
-      check_written(*sets, form);
+    if (!is_read(sets))
+      continue;
+    check_written(*sets, form);
+    check_written_as_tle(*sets);
   }
 }
 

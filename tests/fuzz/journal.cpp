@@ -3,6 +3,7 @@
 
 #include "fuzz/target.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -56,10 +57,12 @@ void try_bytes(const std::string &bytes) {
     found = journal->count();
     // What follows the last whole block goes; what was found stays.
     journal->keep({1u << 30, 7}, "new");
+    journal->remark(1u << 30, "a word");
   }
   auto again = fuzz::must(Journal::open(path, job), "a journal that was gone on with is one");
   fuzz::require(again.count() >= found && again.find({1u << 30, 7}) == "new",
                 "found blocks and the new one are there");
+  fuzz::require(std::ranges::count(again.remarks(1u << 30), "a word") > 0, "and what was said");
   again.finish();
   fuzz::require(!std::filesystem::exists(path), "a finished journal goes");
 }

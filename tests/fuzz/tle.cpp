@@ -29,6 +29,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     Diagnostics diagnostics;
     TleOptions options;
     options.allow_bad_checksum = options.keep_going = is_lenient;
+    // Whoever does not know the form asks so.
+    fuzz::is_read(read_elements(text, "input", options, diagnostics));
     const auto sets = read_tle(text, "input", options, diagnostics);
     if (!fuzz::is_read(sets))
       continue;
