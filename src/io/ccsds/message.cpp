@@ -184,6 +184,13 @@ Result<void> clean(std::vector<Field> &fields, const std::string &file, Where &c
                   fmt::format("\"{}\" is no keyword; letters, digits and _ were expected",
                               printable(field.key.substr(0, 60))),
                   {file, field.line});
+    if (field.unit.find('[') != std::string::npos) // KVN would not find where it begins
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("the unit of {} is \"{}\"; one without brackets was expected, such as "
+                      "km/s",
+                      field.key, printable(field.unit.substr(0, 40))),
+          {file, field.line});
     for (std::string *text : {&field.text, &field.unit}) {
       std::replace_if(
           text->begin(), text->end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; },

@@ -143,7 +143,7 @@ std::string replaced(std::string text, const std::string &from, const std::strin
 
 TEST(CcsdsMessages, RefusesWithPlaceAndKeyword) {
   const std::string oem = *read_file(folder + "oem.kvn"), opm = *read_file(folder + "opm.kvn"),
-                    xml = *read_file(folder + "oem.xml");
+                    xml = *read_file(folder + "oem.xml"), opm_xml = *read_file(folder + "opm.xml");
   const std::tuple<std::string, const char *> cases[] = {
       {replaced(oem, "REF_FRAME            = TEME\n", ""), "no REF_FRAME"},
       {replaced(oem, "META_STOP", "META_STOP\nFOO = 1"), "m:16: FOO"},
@@ -157,6 +157,8 @@ TEST(CcsdsMessages, RefusesWithPlaceAndKeyword) {
       {replaced(opm, "Y_DOT                =     7.255240 [km/s]\n", ""), "has no Y_DOT"},
       {replaced(xml, "<oem", "<!DOCTYPE oem [<!ENTITY a \"b\">]><oem"), "document type"},
       {xml.substr(0, xml.size() / 2), "is no XML"},
+      {replaced(opm_xml, "<Y_DOT units=\"km/s\"", "<Y_DOT units=\"km/[\""),
+       "the unit of Y_DOT is \"km/[\""},
       {"CCSDS_OEM_VERS = 2.0\n", "holds no segment"},
       {"", "holds no CCSDS message"},
   };
