@@ -27,7 +27,8 @@ constexpr const char *laser_limits =
 std::string between_of(const LightModel &model, const LightOptions &options) {
   if (model.facts().is_convex)
     return "none: a convex body";
-  if (options.between != BetweenMethod::Chains || !is_sunlight(options.source))
+  if (options.between != BetweenMethod::Chains || !is_sunlight(options.source) ||
+      !chains_draw_any(model.scene()))
     return name_of(BetweenMethod::Paths);
   return std::string(name_of(BetweenMethod::Chains)) + ", and paths for what they cannot tell" +
          (draws_reserve(options.poses_in_all) ? "" : " and where few of them are met");

@@ -69,6 +69,15 @@ def test_the_header_says_who_draws_light_between_surfaces(umov, scenario, tmp_pa
     assert "chains, and paths for what they cannot tell and where few of them are met" in told()
     laser = told("--source", "laser", "--state", 1, 0, 0, 1)
     assert "paths" in laser and "chains, and" not in laser
+    # Where all that reflects are mirrors paths draw every pose; one rough part is enough for chains.
+    (tmp_path / "cube.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\ng floor\nf 1 2 3\nf 1 3 4\ng wall\nf 1 4 6\nf 1 6 5\n")
+    text = (tmp_path / name).read_text().replace('default = "paper_al"', 'default = "shiny"\nwall = "WALL"')
+    text += ('[material.shiny]\nindex = { n = 0.4, k = 2.4 }\ndistribution = { model = "mirror" }\n'
+             '[material.black]\nindex = { n = 1.0, k = 0.0 }\ndistribution = { model = "ggx", alpha = 0.3 }\n')
+    for wall, is_drawn in (("shiny", False), ("black", False), ("paper_al", True)):
+        (tmp_path / name).write_text(text.replace("WALL", wall))
+        assert ("chains" in told()) == is_drawn, wall
 
 
 def test_a_warm_body_shines_by_itself(umov, scenario, tmp_path):

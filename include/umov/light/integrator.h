@@ -43,6 +43,10 @@ struct IntegrationOptions {
 /// paths of a few dozen of them, is drawn for so many poses (0: many).
 bool draws_reserve(std::size_t poses_in_all);
 
+/// Whether chains draw any of the light of more than one surface: not where all that is seen from
+/// outside and reflects are mirrors, lobes as narrow, or measured surfaces, which paths draw.
+bool chains_draw_any(const Scene &scene);
+
 /// Light of one pose in all bands.
 struct PoseResult {
   std::vector<BandResult> bands;

@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <umov/core/random.h>
 #include <umov/core/stop.h>
+#include <umov/light/integrator.h>
 
 namespace umov {
 namespace {
@@ -114,7 +116,38 @@ bool is_left_to_paths(const Surface &surface) {
          (has_lobe(surface, 0) && surface.width() < least_width);
 }
 
+ChainPart part_of(const Surface &a, const Surface &b) {
+  if (is_left_to_paths(a) || is_left_to_paths(b))
+    return ChainPart::Nothing;
+  if (a.width() * b.width() >= least_widths)
+    return ChainPart::Whole;
+  const bool is_lobe_alone = !a.has_diffuse() && !b.has_diffuse();
+  return is_lobe_alone ? ChainPart::Nothing : ChainPart::WithoutLobes;
+}
+
+bool reflects_nothing(const Surface &surface, std::size_t bands) {
+  for (std::size_t b = 0; b < bands; ++b)
+    if (has_lobe(surface, b) || surface.has_diffuse() || surface.has_mirror())
+      return false;
+  return true;
+}
+
 } // namespace
+
+bool chains_draw_any(const Scene &scene) {
+  const std::vector<VisibleSides> sides = visible_sides(scene.mesh);
+  std::set<const Surface *> ends;
+  for (std::size_t t = 0; t < sides.size(); ++t)
+    for (const bool is_front : {true, false})
+      if (is_front ? sides[t].front : sides[t].back)
+        ends.insert(&surface_of_side(scene, scene.mesh.triangles[t], is_front));
+  std::erase_if(
+      ends, [&](const Surface *one) { return reflects_nothing(*one, scene.grid.nodes().size()); });
+  return std::ranges::any_of(ends, [&](const Surface *a) {
+    return std::ranges::any_of(
+        ends, [&](const Surface *b) { return part_of(*a, *b) != ChainPart::Nothing; });
+  });
+}
 
 ChainSurfaces::ChainSurfaces(const Scene &scene, const std::atomic<bool> *cancel) {
   const std::size_t bands = scene.grid.nodes().size();
@@ -173,12 +206,7 @@ bool ChainSurfaces::is_narrow(std::uint32_t kind) const {
 }
 
 ChainPart ChainSurfaces::part(std::uint32_t a, std::uint32_t b) const {
-  if (is_left_to_paths(*surface_[a]) || is_left_to_paths(*surface_[b]))
-    return ChainPart::Nothing;
-  if (surface_[a]->width() * surface_[b]->width() >= least_widths)
-    return ChainPart::Whole;
-  const bool is_lobe_alone = !surface_[a]->has_diffuse() && !surface_[b]->has_diffuse();
-  return is_lobe_alone ? ChainPart::Nothing : ChainPart::WithoutLobes;
+  return part_of(*surface_[a], *surface_[b]);
 }
 
 void ChainSurfaces::tabulate_strength(std::size_t bands, const std::atomic<bool> *cancel) {
