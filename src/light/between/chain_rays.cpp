@@ -163,10 +163,13 @@ ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t 
 
 double ChainRays::freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
                           std::uint64_t stream) const {
-  constexpr std::uint32_t looks = 4;
+  constexpr std::size_t fewest = 4;
+  const std::size_t looks = (fewest + ways.size() - 1) / ways.size() * ways.size(); // of all alike
   std::size_t free = 0;
-  for (std::uint32_t k = 0; k < looks; ++k) {
-    const auto x = uniform4(seed_, look_stream + k, stream);
+  for (std::size_t k = 0; k < looks; ++k) {
+    constexpr unsigned beyond_streams = 40; // numbers of chains leave these bits (number_of_first)
+    const auto x = uniform4(seed_, look_stream + static_cast<std::uint32_t>(k % fewest),
+                            stream + (static_cast<std::uint64_t>(k / fewest) << beyond_streams));
     const Direction d = ways[k % ways.size()].draw(end.normal, end.along, x[0], x[1], x[2]);
     if (!(dot(d.to, end.face) > 0))
       continue;
@@ -174,7 +177,7 @@ double ChainRays::freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
     occluder_.is_free(std::span(&end.point, 1), d.to, std::span(&is_free, 1));
     free += is_free;
   }
-  return std::sqrt((static_cast<double>(free) + 0.25) / looks);
+  return std::sqrt((static_cast<double>(free) + 0.25) / static_cast<double>(looks));
 }
 
 double ChainRays::strength(const ChainList &all, std::size_t chain) const {
