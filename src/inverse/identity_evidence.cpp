@@ -38,7 +38,7 @@ double log_evidence_of(const CurveLikelihood &likelihood, const ModelLight &ligh
 
 /// Searches through a signature are smaller: it has no finer detail.
 SearchOptions search_of_table(SearchOptions options) {
-  constexpr std::size_t grid = 12'000, starts = 50, samples = 400;
+  constexpr std::size_t grid = 12'000, starts = 200, samples = 400;
   options.grid = std::min(options.grid, grid);
   options.starts = std::min(options.starts, starts);
   options.samples = std::min(options.samples, samples);

@@ -374,7 +374,7 @@ std::vector<Turning> cooled_places(const CurveModel &model, std::vector<Turning>
     int steps;
     std::size_t places, left; ///< fits, best first, that are kept and that go on
   };
-  constexpr Round rounds[] = {{0.25, 20, 3, 30, 600}, {0.08, 60, 4, 60, 0}};
+  constexpr Round rounds[] = {{0.25, 20, 3, 80, 600}, {0.08, 60, 4, 60, 0}};
   std::vector<Turning> out;
   for (const Round &round : rounds) {
     const auto epochs = inverse::epochs_out_of_step(model.curve().epochs.size(), round.epochs);
@@ -392,7 +392,7 @@ std::vector<Turning> cooled_places(const CurveModel &model, std::vector<Turning>
   return out;
 }
 
-/// Fixed attitudes that are worth a fit, and the grid that they were found on; best first.
+/// Fixed attitudes that are worth a fit, and those of the grid that they were found by, best first.
 struct Places {
   std::vector<Turning> judged, best;
 };
@@ -443,11 +443,11 @@ double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> 
   inverse::FitPlan plan{Freedom::Attitude, 3, 0, 0, 1e-3, threads};
   auto fits = inverse::fit_turnings(model, few, places, some, plan);
   if (!fits.empty() && fits.front().at.chi2 * all > far) {
-    // A search forgives a quarter of I, which can be a hundred times the errors: a good place may
-    // be far off yet.
-    constexpr std::size_t handful = 5;
+    // A search forgives up to a quarter of I, which can be a hundred times the errors: a good place
+    // may be far off yet.
+    constexpr std::size_t some_more = 30;
     plan.iterations = 12;
-    fits = inverse::fit_turnings(model, few, inverse::turnings_of(fits, handful), some, plan);
+    fits = inverse::fit_turnings(model, few, inverse::turnings_of(fits, some_more), some, plan);
   }
   return fits.empty() ? -1 : fits.front().at.chi2 * all;
 }

@@ -23,6 +23,7 @@ struct Running {
   int idle = 0;          ///< iterations in a row that gained next to nothing
   bool has_moved = true; ///< since its derivatives were taken
   bool is_fine = false;  ///< its derivatives are those of close neighbours
+  int refused = 0;       ///< steps in a row that gained nothing
   double chi2_at_cut = std::numeric_limits<double>::infinity(); ///< the last
 };
 
@@ -79,6 +80,9 @@ Step step_of(const Running &one) {
   const double largest = std::max(a.diagonal().maxCoeff(), 1e-12);
   Eigen::MatrixXd damped = a;
   damped.diagonal() += one.damping * (a.diagonal().array() + 1e-6 * largest).matrix();
+  // What the light does not tell is not stepped by: its derivatives are rounding.
+  constexpr double untold = 0.8; // [rad]: nothing is known beyond it
+  damped.diagonal().array() += 1 / (untold * untold);
   Step step = -algebra::solve_symmetric(damped, one.gradient);
   constexpr double longest = 0.15; // [rad]: beyond it the light is another one
   const double length = step.norm();
@@ -90,6 +94,7 @@ void refine(Running &one) {
   one.is_fine = one.has_moved = true;
   one.damping = 1e-5;
   one.idle = 0;
+  one.chi2_at_cut = std::numeric_limits<double>::infinity(); // what it gained so far says nothing
 }
 
 /// Takes a step that gained, shortens the next if it did not. At the bottom neither gains: a valley
@@ -97,21 +102,23 @@ void refine(Running &one) {
 /// are no end.
 void take(Running &one, const Turning &tried, const Comparison &compared) {
   constexpr double near = 1, least = 0.01, stuck = 1e5; // of chi-square; of the damping
-  constexpr int patience = 3;
+  constexpr int patience = 3, refusals = 2;
   const double gain = one.fit.at.chi2 - compared.chi2;
   one.has_moved = gain > 0;
   if (one.has_moved) {
     one.fit.turning = tried;
     one.fit.at = compared;
     one.residuals = compared.residuals;
-    one.damping = std::max(one.damping / 5, 1e-10);
+    one.damping = std::max(one.damping / 5, one.is_fine ? 1e-10 : 1e-6);
+    one.refused = 0;
     one.idle = gain < least ? one.idle + 1 : 0;
   } else {
     one.damping *= 6;
+    ++one.refused;
   }
   if (one.is_fine)
     one.fit.is_converged = one.idle >= patience || !(one.damping < stuck);
-  else if ((one.has_moved && gain < near) || !(one.damping < stuck))
+  else if ((one.has_moved && gain < near) || one.refused == refusals)
     refine(one);
 }
 

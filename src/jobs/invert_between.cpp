@@ -79,9 +79,11 @@ void doubt_direct_light(double share, double floor, Verdict &verdict,
     return;
   notes.push_back(fmt::format(
       "light from surface to surface, which this fit leaves out, would be {:.2g} of I in the best "
-      "attitude (in the median): more than --floor {:.2g}, so the set may lie beside the truth; "
-      "with render.bounces = 4 in the object's scenario it is in the fit",
-      share, floor));
+      "attitude (in the median): more than --floor {:.2g}, so {}; with render.bounces = 4 in the "
+      "object's scenario it is in the fit",
+      share, floor,
+      verdict == Verdict::NoFit ? "that no attitude fits may be its doing"
+                                : "the set may lie beside the truth"));
   if (share > much * allowed && verdict == Verdict::Determined)
     verdict = Verdict::Undetermined;
 }
@@ -90,7 +92,7 @@ Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &r
                                 const SearchedLight &ready, const ObservedCurve &curve,
                                 const PoseAnswer &answer, const JobOptions &options,
                                 const Monitor &monitor, Judgement &out) {
-  if (answer.modes.empty() || out.verdict == Verdict::NoFit)
+  if (answer.modes.empty())
     return {};
   UMOV_ASSIGN(
       share, share_between(scenario, ready, curve, answer.modes.front().turning, options, monitor));

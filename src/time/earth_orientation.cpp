@@ -66,7 +66,8 @@ bool is_plausible(const Day &day) {
          std::abs(day.dut1_s) <= ut1_s;
 }
 
-/// By how much UT1-UTC grows within a day; a leap second at its end is no part of that.
+/// By how much UT1-UTC grows within a day; a leap second at its end is no part of that. Before 1972
+/// UTC made steps of tenths of a second, which are (nobody is asked about those days).
 double growth_s(const Day &a, const Day &b) {
   const double change = b.dut1_s - a.dut1_s;
   return change - std::round(change);
@@ -75,6 +76,12 @@ double growth_s(const Day &a, const Day &b) {
 /// The length of the day has been off by up to 4 ms since 1962 (IERS EOP C04). A change of tenths
 /// of a second is a slip, and half of one would be taken for a leap second.
 constexpr double growth_most_s = 0.1;
+
+bool is_continuous(const Day &a, const Day &b) {
+  constexpr double leap_seconds_since = 41317; // 1 January 1972
+  return a.mjd < leap_seconds_since ||
+         (std::abs(growth_s(a, b)) <= growth_most_s && std::abs(b.dut1_s - a.dut1_s) < 1.5);
+}
 
 constexpr const char *expected_form =
     "IERS finals2000A, or columns mjd,x_arcsec,y_arcsec,ut1_utc_s for one day after the other";
@@ -104,7 +111,7 @@ Result<Days> parse(std::string_view text, const std::string &name) {
                               "expected, within 2 arcsec and 1 s",
                               day->mjd, day->x_arcsec, day->y_arcsec, day->dut1_s, expected_form),
                   place);
-    if (!out.all.empty() && !(std::abs(growth_s(out.all.back(), *day)) <= growth_most_s))
+    if (!out.all.empty() && !is_continuous(out.all.back(), *day))
       return fail(ErrorCode::BadInput,
                   fmt::format("UT1-UTC goes from {:g} to {:g} s within a day; a change of up to {} "
                               "s, or of one more where a leap second is, was expected. Correct the "

@@ -17,7 +17,7 @@ struct SearchOptions {
   /// the misfit of the best attitude asks. 0: the floor is what `errors` say.
   double largest_floor = 0;
   std::size_t grid = 60'000;  ///< attitudes that are looked at first
-  std::size_t starts = 1200;  ///< of them, spread out, that are refined
+  std::size_t starts = 1200;  ///< of them, spread out, that take a few steps; more of short curves
   std::size_t samples = 1000; ///< of the posterior
   /// The evidence alone is asked for: what a set needs more than that is left out.
   bool needs_set = true;

@@ -6,6 +6,7 @@
 #include <map>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
+#include <umov/time/time_system.h>
 #include <utility>
 
 namespace umov {
@@ -62,13 +63,28 @@ std::string degrees(double radians) {
   return fmt::format("{:8.4f}", value);
 }
 
+/// An epoch of a year's end rounds up to the first day of the next year.
+struct TleEpoch {
+  int year = 0;
+  double day = 1;
+};
+
+TleEpoch epoch_of(const ElementSet &set) {
+  const int days = is_leap_year(set.epoch_year) ? 366 : 365;
+  constexpr double half_of_last_digit = 5e-9;
+  if (set.epoch_day_of_year >= days + 1 - half_of_last_digit)
+    return {set.epoch_year + 1, 1};
+  return {set.epoch_year, set.epoch_day_of_year};
+}
+
 std::string lines_of(const ElementSet &set) {
+  const TleEpoch epoch = epoch_of(set);
   const std::string number = catalogue_number(set.norad_cat_id);
-  const std::string first = fmt::format(
-      "1 {}{} {} {:02}{:012.8f} {} {} {} {} {:4}", number, set.classification,
-      designator(set.international_designator), set.epoch_year % 100, set.epoch_day_of_year,
-      fraction(set.mean_motion_dot), implied_decimal(set.mean_motion_ddot),
-      implied_decimal(set.bstar), set.ephemeris_type % 10, set.element_number % 10'000);
+  const std::string first =
+      fmt::format("1 {}{} {} {:02}{:012.8f} {} {} {} {} {:4}", number, set.classification,
+                  designator(set.international_designator), epoch.year % 100, epoch.day,
+                  fraction(set.mean_motion_dot), implied_decimal(set.mean_motion_ddot),
+                  implied_decimal(set.bstar), set.ephemeris_type % 10, set.element_number % 10'000);
   const std::string second = fmt::format(
       "2 {} {} {} {:07} {} {} {:11.8f}{:5}", number, degrees(set.inclination), degrees(set.raan),
       std::min(std::llround(set.eccentricity * 1e7), 9'999'999LL), degrees(set.argument_of_perigee),
@@ -86,9 +102,9 @@ std::string beyond_columns(const ElementSet &set) {
     return fmt::format("catalogue number {} does not fit a TLE, whose five columns end at Z9999 = "
                        "{}",
                        number, alpha5_max);
-  if (set.epoch_year < 1957 || set.epoch_year > 2056) // 60 would be read as 1960
+  if (const int year = epoch_of(set).year; year < 1957 || year > 2056) // 60 is read as 1960
     return fmt::format("the epoch of {} is in {}; the two digits of a TLE's year mean 1957 to 2056",
-                       number, set.epoch_year);
+                       number, year);
   if (!(std::abs(set.mean_motion_dot) < 0.999999995)) // the columns begin with the point
     return fmt::format("the first derivative of the mean motion of {} is {:g} rev/d2; a TLE holds "
                        "less than 1",

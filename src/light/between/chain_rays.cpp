@@ -163,14 +163,20 @@ ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t 
 
 double ChainRays::freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
                           std::uint64_t stream) const {
-  constexpr std::size_t fewest = 4;
-  const std::size_t looks = (fewest + ways.size() - 1) / ways.size() * ways.size(); // of all alike
-  std::size_t free = 0;
+  // All ways alike: several looks at each of a few, and of many every so manieth from any of them.
+  constexpr std::size_t fewest = 4, most = 8;
+  const std::size_t all = (fewest + ways.size() - 1) / ways.size() * ways.size();
+  const std::size_t looks = std::min(all, most);
+  std::size_t free = 0, first = 0;
   for (std::size_t k = 0; k < looks; ++k) {
     constexpr unsigned beyond_streams = 40; // numbers of chains leave these bits (number_of_first)
     const auto x = uniform4(seed_, look_stream + static_cast<std::uint32_t>(k % fewest),
                             stream + (static_cast<std::uint64_t>(k / fewest) << beyond_streams));
-    const Direction d = ways[k % ways.size()].draw(end.normal, end.along, x[0], x[1], x[2]);
+    if (k == 0 && looks < all)
+      first = std::min(static_cast<std::size_t>(x[3] * static_cast<double>(ways.size())),
+                       ways.size() - 1);
+    const Direction d =
+        ways[(first + k * all / looks) % ways.size()].draw(end.normal, end.along, x[0], x[1], x[2]);
     if (!(dot(d.to, end.face) > 0))
       continue;
     unsigned char is_free = 0;

@@ -32,7 +32,7 @@ public:
   /// How much a chain matters over all poses; `number` in those sequences.
   [[nodiscard]] double matters(const ChainList &all, std::size_t chain, std::uint64_t number) const;
   /// Root of the part of an end's light that is free, of a surface that sends it in these ways,
-  /// each as much: asked of a few rays, as many for each.
+  /// each as much: asked of eight rays at most, of all ways alike.
   [[nodiscard]] double freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
                                std::uint64_t stream) const;
   [[nodiscard]] std::size_t bounces() const { return bounces_; }

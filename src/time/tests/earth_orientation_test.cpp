@@ -86,12 +86,13 @@ TEST_F(OtherEarth, RefusesWhatIsNoTableAndKeepsTheOldOne) {
   } rows[] = {
       {"", 1},
       {"hello", 1},
-      {"60000,0.1,0.2,-0.01\n", 1},               // one day
-      {"60000,0.1,0.2,0\n60002,0.1,0.2,0\n", 2},  // a day is missing
-      {"60000,0.1,0.2,0\n60001,0.1,0.2,5\n", 2},  // no UT1-UTC
-      {"60000,0.1,0.2,0\n60001,0.1,0.2,.6\n", 2}, // neither a day's change nor a leap second
-      {"60000,0.1,0.2,0\n60001,0.1,x,0\n", 2},    // no number
-      {"60000,0.1,0.2,0\n60001,0.1\n", 2}};       // too few
+      {"60000,0.1,0.2,-0.01\n", 1},                   // one day
+      {"60000,0.1,0.2,0\n60002,0.1,0.2,0\n", 2},      // a day is missing
+      {"60000,0.1,0.2,0\n60001,0.1,0.2,5\n", 2},      // no UT1-UTC
+      {"60000,0.1,0.2,0\n60001,0.1,0.2,.6\n", 2},     // neither a day's change nor a leap second
+      {"60000,0.1,0.2,-.98\n60001,0.1,0.2,.98\n", 2}, // two leap seconds at once
+      {"60000,0.1,0.2,0\n60001,0.1,x,0\n", 2},        // no number
+      {"60000,0.1,0.2,0\n60001,0.1\n", 2}};           // too few
   for (const auto &row : rows) {
     const auto done = use_earth_orientation(row.text, "bad");
     ASSERT_FALSE(done) << row.text;

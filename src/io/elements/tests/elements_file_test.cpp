@@ -331,6 +331,16 @@ TEST(Elements, ATleSaysWhatItCannotHold) {
     expect_equal(read_text(*write_elements({set}, form, now, said))->front(), set);
 }
 
+TEST(Elements, AnEpochThatRoundsUpToTheNextYearIsWrittenAsThat) {
+  ElementSet set = read_sample("omm.kvn")[0];
+  set.epoch_year = 2020;
+  set.epoch_day_of_year = 367 - 1e-4 / 86400; // 1e-4 s before 2021: 367.00000000
+  Diagnostics said;
+  const auto text = write_elements({set}, ElementsForm::Tle, set.epoch, said);
+  ASSERT_TRUE(text) << text.error().text();
+  EXPECT_NE(text->find(" 21001.00000000 "), std::string::npos) << *text;
+}
+
 // CelesTrak's FAQ: years 57-99 are of 1957-1999, 00-56 of 2000-2056. The mean motion has 11
 // columns, eight of them behind the point; an exponent has one digit.
 TEST(Elements, ATleIsNotWrittenWhereItWouldBeReadAsAnotherOrbit) {
@@ -346,6 +356,12 @@ TEST(Elements, ATleIsNotWrittenWhereItWouldBeReadAsAnotherOrbit) {
   EXPECT_NE(refusal([](ElementSet &set) { set.epoch_year = 2057; }).find("is in 2057; the two"),
             std::string::npos);
   EXPECT_NE(refusal([](ElementSet &set) { set.epoch_year = 1956; }).find("1957 to 2056"),
+            std::string::npos);
+  // 59.9999 s of the last minute of 2056 are the first day of 2057 in eight decimals.
+  EXPECT_NE(refusal([](ElementSet &set) {
+              set.epoch_year = 2056;
+              set.epoch_day_of_year = 367 - 1e-4 / 86400;
+            }).find("is in 2057; the two"),
             std::string::npos);
   EXPECT_NE(refusal([](ElementSet &set) {
               set.mean_motion = 100 * 2 * pi / 1440;
