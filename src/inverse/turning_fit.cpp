@@ -14,6 +14,13 @@ namespace {
 
 using Residuals = Eigen::Map<const Eigen::VectorXd>;
 
+/// What a fit takes its derivatives from.
+enum class Stage {
+  Rough, ///< neighbours that are as far in each direction
+  Fine,  ///< half a width away
+  Last,  ///< the first again: masks are steps, in whose dents fine derivatives rest
+};
+
 /// One fit on its way.
 struct Running {
   TurningFit fit;
@@ -22,8 +29,8 @@ struct Running {
   double damping = 1e-2;
   int idle = 0;          ///< iterations in a row that gained next to nothing
   bool has_moved = true; ///< since its derivatives were taken
-  bool is_fine = false;  ///< its derivatives are those of close neighbours
-  int refused = 0;       ///< steps in a row that gained nothing
+  Stage stage = Stage::Rough;
+  int refused = 0; ///< steps in a row that gained nothing
   double chi2_at_cut = std::numeric_limits<double>::infinity(); ///< the last
 };
 
@@ -37,7 +44,7 @@ std::vector<Running *> moving(std::vector<Running> &fits) {
 }
 
 Neighbours neighbours_of(const Running &one, const FitPlan &plan) {
-  return one.is_fine
+  return one.stage == Stage::Fine
              ? Neighbours::half_widths(one.fit.information, plan.difference_rad)
              : Neighbours::alike(static_cast<Eigen::Index>(plan.freedom), plan.difference_rad);
 }
@@ -89,11 +96,12 @@ Step step_of(const Running &one) {
   return length > longest ? Step(step * (longest / length)) : step;
 }
 
-/// The fit goes on by fine derivatives: rough ones creep along a valley, or stand still in it.
-void refine(Running &one) {
-  one.is_fine = one.has_moved = true;
-  one.damping = 1e-5;
-  one.idle = 0;
+/// The fit goes on by other derivatives: rough ones creep along a valley, or stand still in it.
+void go_on(Running &one, Stage stage) {
+  one.stage = stage;
+  one.has_moved = true;
+  one.damping = stage == Stage::Fine ? 1e-5 : 1e-2;
+  one.idle = one.refused = 0;
   one.chi2_at_cut = std::numeric_limits<double>::infinity(); // what it gained so far says nothing
 }
 
@@ -109,17 +117,20 @@ void take(Running &one, const Turning &tried, const Comparison &compared) {
     one.fit.turning = tried;
     one.fit.at = compared;
     one.residuals = compared.residuals;
-    one.damping = std::max(one.damping / 5, one.is_fine ? 1e-10 : 1e-6);
+    one.damping = std::max(one.damping / 5, one.stage == Stage::Fine ? 1e-10 : 1e-6);
     one.refused = 0;
     one.idle = gain < least ? one.idle + 1 : 0;
   } else {
     one.damping *= 6;
     ++one.refused;
   }
-  if (one.is_fine)
-    one.fit.is_converged = one.idle >= patience || !(one.damping < stuck);
-  else if ((one.has_moved && gain < near) || one.refused == refusals)
-    refine(one);
+  const bool is_at_rest = one.idle >= patience || !(one.damping < stuck);
+  if (one.stage == Stage::Rough && ((one.has_moved && gain < near) || one.refused == refusals))
+    go_on(one, Stage::Fine);
+  else if (one.stage == Stage::Fine && is_at_rest)
+    go_on(one, Stage::Last);
+  else
+    one.fit.is_converged = is_at_rest;
 }
 
 /// The same turning, as far as a fit on its way tells.
@@ -246,8 +257,11 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
       take(*active[k], tried[k], compared[k]);
   }
   std::vector<Running *> all;
-  for (Running &one : fits)
+  for (Running &one : fits) {
+    if (one.stage == Stage::Last)
+      go_on(one, Stage::Fine); // rough ones make a valley too short
     all.push_back(&one);
+  }
   if (!differentiate(model, likelihood, all, epochs, plan)) // the covariance's
     return {};
   keep_best(fits, fits.size(), span);
