@@ -308,7 +308,8 @@ def test_an_attitude_by_the_light_of_a_card(umov, curve, settings, tmp_path):
     Not the verdicts, nor where the heaviest mode is: many attitudes explain 13 epochs, and the last digits of the light
     decide which of two nearby ones the search keeps."""
     settings()
-    command = ("invert", "pose", curve[0], "--scenario", curve[1], "--grid", 1000, "--visibility", "masks")
+    # By a thousand attitudes, 25 deg apart, it misses peaks, others for other digits (ln evidence 1 to 3 below that of 8000).
+    command = ("invert", "pose", curve[0], "--scenario", curve[1], "--grid", 8000, "--visibility", "masks")
     answers = {}
     for device in ("cpu", "cuda"):
         done = umov(*command, "--device", device, "-o", device)
