@@ -69,6 +69,7 @@ bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
   if (compared.empty() && !near.empty())
     return false;
   std::vector<const std::vector<double> *> residuals;
+  residuals.reserve(compared.size());
   for (const Comparison &one : compared)
     residuals.push_back(&one.residuals);
   std::span<const std::vector<double> *const> rest(residuals);
@@ -248,6 +249,7 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     if (!differentiate(model, likelihood, active, epochs, plan))
       return {};
     std::vector<Turning> tried;
+    tried.reserve(active.size());
     for (const Running *one : active)
       tried.push_back(stepped(one->fit.turning, step_of(*one), span));
     const auto compared = compare_all(model, likelihood, tried, epochs, plan.threads, true);

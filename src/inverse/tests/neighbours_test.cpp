@@ -79,5 +79,20 @@ TEST(Neighbours, OfWhatIsToldTooWellOrNotAtAllAreAtTheEndsOfTheirRange) {
     EXPECT_NEAR(along[p], expected[p], 1e-12) << p;
 }
 
+TEST(Neighbours, OfWhatIsToldTooWellOrNotAtAllAreAtTheEndsOfTheirRange) {
+  constexpr double longest = 1e-3, shortest = 1e-6; // neighbours.cpp
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(6, 6);
+  information.diagonal() << 1e14, -1e-9, 0, 1e14, 4e8, 1; // rounding makes such as the second
+  const Neighbours where = Neighbours::half_widths(information, longest);
+  ASSERT_EQ(where.count(), 12);
+  double along[6] = {};
+  for (std::size_t k = 0; k < where.count(); ++k)
+    for (Eigen::Index p = 0; p < 6; ++p)
+      along[p] = std::max(along[p], std::abs(where.step(k)[p]));
+  const double expected[] = {shortest, longest, longest, shortest, 0.5 / 2e4, longest};
+  for (int p = 0; p < 6; ++p)
+    EXPECT_NEAR(along[p], expected[p], 1e-12) << p;
+}
+
 } // namespace
 } // namespace umov

@@ -77,5 +77,26 @@ TEST(TurningFit, OfASpinRestsAtTheBottomToo) {
   }
 }
 
+TEST(TurningFit, OfASpinRestsAtTheBottomToo) {
+  ObservedCurve curve = pass(40);
+  const CurveErrors errors = no_floor();
+  for (int k = 0; k < 3; ++k) {
+    const Turning truth{turned(glinting_at(curve.epochs[20]), normal * k), {0, 0, 2e-3}};
+    observe(curve, glinting, truth, 100, static_cast<std::uint64_t>(k));
+    const CurveModel model(curve, glinting, {0, 1});
+    const CurveLikelihood likelihood(curve, errors);
+    inverse::Step off(6);
+    off << 0.003, -0.002, 0.002, 0.003, 0.002, -0.002;
+    const Turning start = inverse::stepped(truth, off, inverse::span_of(curve));
+    const auto fits =
+        inverse::fit_turnings(model, likelihood, {start}, {},
+                              {inverse::Freedom::AttitudeAndRate, 200, 12, 24, 1e-3, 1, true});
+    ASSERT_EQ(fits.size(), 1u);
+    EXPECT_TRUE(fits[0].is_converged) << k;
+    const auto at_truth = inverse::compare_all(model, likelihood, std::vector<Turning>{truth}, {}, 1);
+    EXPECT_LT(fits[0].at.chi2, at_truth[0].chi2 + 0.1) << k;
+  }
+}
+
 } // namespace
 } // namespace umov
