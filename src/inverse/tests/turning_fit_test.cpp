@@ -93,7 +93,8 @@ TEST(TurningFit, OfASpinRestsAtTheBottomToo) {
                               {inverse::Freedom::AttitudeAndRate, 200, 12, 24, 1e-3, 1, true});
     ASSERT_EQ(fits.size(), 1u);
     EXPECT_TRUE(fits[0].is_converged) << k;
-    const auto at_truth = inverse::compare_all(model, likelihood, std::vector<Turning>{truth}, {}, 1);
+    const auto at_truth =
+        inverse::compare_all(model, likelihood, std::vector<Turning>{truth}, {}, 1);
     EXPECT_LT(fits[0].at.chi2, at_truth[0].chi2 + 0.1) << k;
   }
 }
