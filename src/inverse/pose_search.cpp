@@ -366,8 +366,8 @@ void tell_refined(const SearchOptions &options, std::size_t done) {
 /// have mirrored the Sun; how they compare shows where a quarter of I is no longer forgiven. Of a
 /// model that is wrong by more than that it does not: each round has places of its own. Empty if it
 /// was stopped.
-std::vector<Turning> cooled_places(const CurveModel &model, std::vector<Turning> from,
-                                   std::size_t times, const SearchOptions &options) {
+std::vector<Turning> cooled_places(const CurveModel &model, const std::vector<Turning> &sorted,
+                                   const SearchOptions &options) {
   struct Round {
     double floor; ///< of I, that is forgiven
     std::size_t epochs;
@@ -375,7 +375,9 @@ std::vector<Turning> cooled_places(const CurveModel &model, std::vector<Turning>
     std::size_t places, left; ///< fits, best first, that are kept and that go on
   };
   constexpr Round rounds[] = {{0.25, 20, 3, 80, 600}, {0.08, 60, 4, 60, 0}};
+  const std::size_t times = times_of(model.curve());
   std::vector<Turning> out;
+  auto from = inverse::spread_out(sorted, options.starts * times, 5 * degree);
   for (const Round &round : rounds) {
     const auto epochs = inverse::epochs_out_of_step(model.curve().epochs.size(), round.epochs);
     const CurveLikelihood likelihood(model.curve(),
@@ -404,10 +406,8 @@ Result<Places> find_places(const SearchModels &models, FoundErrors &errors,
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
   UMOV_ASSIGN(left, search_grid(quick, options));
-  const std::size_t times = times_of(model.curve());
   tell_refined(options, 0);
-  auto best = cooled_places(quick, inverse::spread_out(left, options.starts * times, 5 * degree),
-                            times, options);
+  auto best = cooled_places(quick, left, options);
   Places out{std::move(left), std::move(best)};
   bool has_changed = false;
   if (out.best.empty() || !errors.ask(out.best, has_changed))

@@ -27,8 +27,8 @@ struct Running {
   std::vector<double> residuals;
   Eigen::VectorXd gradient;
   double damping = 1e-2;
-  int idle = 0;          ///< iterations in a row that gained next to nothing
-  bool has_moved = true; ///< since its derivatives were taken
+  int idle = 0;         ///< iterations in a row that gained next to nothing
+  bool is_stale = true; ///< its derivatives are of another place, or of other neighbours
   Stage stage = Stage::Rough;
   int refused = 0; ///< steps in a row that gained nothing
   double chi2_at_cut = std::numeric_limits<double>::infinity(); ///< the last
@@ -53,7 +53,7 @@ Neighbours neighbours_of(const Running &one, const FitPlan &plan) {
 bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
                    std::vector<Running *> fits, std::span<const std::size_t> epochs,
                    const FitPlan &plan) {
-  std::erase_if(fits, [](const Running *one) { return !one->has_moved; });
+  std::erase_if(fits, [](const Running *one) { return !one->is_stale; });
   const double span = span_of(model.curve(), epochs);
   std::vector<Neighbours> where;
   std::vector<Turning> near;
@@ -100,7 +100,7 @@ Step step_of(const Running &one) {
 /// The fit goes on by other derivatives: rough ones creep along a valley, or stand still in it.
 void go_on(Running &one, Stage stage) {
   one.stage = stage;
-  one.has_moved = true;
+  one.is_stale = true;
   one.damping = stage == Stage::Fine ? 1e-5 : 1e-2;
   one.idle = one.refused = 0;
   one.chi2_at_cut = std::numeric_limits<double>::infinity(); // what it gained so far says nothing
@@ -113,8 +113,8 @@ void take(Running &one, const Turning &tried, const Comparison &compared) {
   constexpr double near = 1, least = 0.01, stuck = 1e5; // of chi-square; of the damping
   constexpr int patience = 3, refusals = 2;
   const double gain = one.fit.at.chi2 - compared.chi2;
-  one.has_moved = gain > 0;
-  if (one.has_moved) {
+  one.is_stale = gain > 0;
+  if (gain > 0) {
     one.fit.turning = tried;
     one.fit.at = compared;
     one.residuals = compared.residuals;
@@ -126,7 +126,7 @@ void take(Running &one, const Turning &tried, const Comparison &compared) {
     ++one.refused;
   }
   const bool is_at_rest = one.idle >= patience || !(one.damping < stuck);
-  if (one.stage == Stage::Rough && ((one.has_moved && gain < near) || one.refused == refusals))
+  if (one.stage == Stage::Rough && ((gain > 0 && gain < near) || one.refused == refusals))
     go_on(one, Stage::Fine);
   else if (one.stage == Stage::Fine && is_at_rest)
     go_on(one, Stage::Last);

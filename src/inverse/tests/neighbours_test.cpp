@@ -46,19 +46,23 @@ TEST(Neighbours, HalfAWidthAwayTheFloorOfAValleyIsSeen) {
   EXPECT_LT((near * floor - valley.along()).norm(), 0.01 * valley.along().norm());
 }
 
+/// How far neighbours are along each unknown.
+Eigen::VectorXd extents(const Neighbours &where) {
+  Eigen::VectorXd out = where.step(0).cwiseAbs();
+  for (std::size_t k = 1; k < where.count(); ++k)
+    out = out.cwiseMax(where.step(k).cwiseAbs());
+  return out;
+}
+
 TEST(Neighbours, AreHalfAWidthAwayAndNoFartherThanTold) {
   const double narrow = 1e-4, wide = 0.1, longest = 2e-3;
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(3, 3);
   information.diagonal() << 1 / (wide * wide), 1 / (narrow * narrow), 0; // the last tells nothing
   const Neighbours where = Neighbours::half_widths(information, longest);
   ASSERT_EQ(where.count(), 6);
-  double along[3] = {};
-  for (std::size_t k = 0; k < where.count(); ++k) {
-    const inverse::Step step = where.step(k);
-    for (Eigen::Index p = 0; p < 3; ++p)
-      along[p] = std::max(along[p], std::abs(step[p]));
-    EXPECT_LT((step + where.step(k ^ 1)).norm(), 1e-15); // both sides
-  }
+  for (std::size_t k = 0; k < where.count(); ++k)
+    EXPECT_LT((where.step(k) + where.step(k ^ 1)).norm(), 1e-15); // both sides
+  const Eigen::VectorXd along = extents(where);
   EXPECT_NEAR(along[0], longest, 1e-12);
   EXPECT_NEAR(along[1], narrow / 2, 1e-12);
   EXPECT_NEAR(along[2], longest, 1e-12);
@@ -70,25 +74,7 @@ TEST(Neighbours, OfWhatIsToldTooWellOrNotAtAllAreAtTheEndsOfTheirRange) {
   information.diagonal() << 1e14, -1e-9, 0, 1e14, 4e8, 1; // rounding makes such as the second
   const Neighbours where = Neighbours::half_widths(information, longest);
   ASSERT_EQ(where.count(), 12);
-  double along[6] = {};
-  for (std::size_t k = 0; k < where.count(); ++k)
-    for (Eigen::Index p = 0; p < 6; ++p)
-      along[p] = std::max(along[p], std::abs(where.step(k)[p]));
-  const double expected[] = {shortest, longest, longest, shortest, 0.5 / 2e4, longest};
-  for (int p = 0; p < 6; ++p)
-    EXPECT_NEAR(along[p], expected[p], 1e-12) << p;
-}
-
-TEST(Neighbours, OfWhatIsToldTooWellOrNotAtAllAreAtTheEndsOfTheirRange) {
-  constexpr double longest = 1e-3, shortest = 1e-6; // neighbours.cpp
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(6, 6);
-  information.diagonal() << 1e14, -1e-9, 0, 1e14, 4e8, 1; // rounding makes such as the second
-  const Neighbours where = Neighbours::half_widths(information, longest);
-  ASSERT_EQ(where.count(), 12);
-  double along[6] = {};
-  for (std::size_t k = 0; k < where.count(); ++k)
-    for (Eigen::Index p = 0; p < 6; ++p)
-      along[p] = std::max(along[p], std::abs(where.step(k)[p]));
+  const Eigen::VectorXd along = extents(where);
   const double expected[] = {shortest, longest, longest, shortest, 0.5 / 2e4, longest};
   for (int p = 0; p < 6; ++p)
     EXPECT_NEAR(along[p], expected[p], 1e-12) << p;

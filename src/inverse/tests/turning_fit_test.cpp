@@ -33,69 +33,45 @@ Quaternion glinting_at(const ObservedEpoch &epoch) {
   return best;
 }
 
+/// A fit from there rests no higher than the truth: a minimum lies below it, and steps end where
+/// three in a row gain less than .01 each.
+void expect_rests_below(const Turning &truth, const Turning &start, const ObservedCurve &curve,
+                        inverse::Freedom freedom) {
+  const CurveModel model(curve, glinting, {0, 1});
+  const CurveLikelihood likelihood(curve, no_floor());
+  const bool drops_hopeless = freedom == inverse::Freedom::AttitudeAndRate; // as a search of spins
+  const auto fits = inverse::fit_turnings(model, likelihood, {start}, {},
+                                          {freedom, 200, 12, 24, 1e-3, 1, drops_hopeless});
+  ASSERT_EQ(fits.size(), 1u);
+  EXPECT_TRUE(fits[0].is_converged);
+  const auto at_truth = inverse::compare_all(model, likelihood, std::vector<Turning>{truth}, {}, 1);
+  EXPECT_LT(fits[0].at.chi2, at_truth[0].chi2 + 0.1);
+}
+
 TEST(TurningFit, RestsAtTheBottomOfTheValleyOfAGlint) {
   ObservedCurve curve = pass(40);
   const Quaternion glint = glinting_at(curve.epochs[20]);
-  const CurveErrors errors = no_floor();
   for (int k = 0; k < 6; ++k) {
+    SCOPED_TRACE(k);
     const Quaternion truth = turned(glint, normal * k);
     observe(curve, glinting, {truth, {}}, 100, static_cast<std::uint64_t>(k));
-    const CurveModel model(curve, glinting, {0, 1});
-    const CurveLikelihood likelihood(curve, errors);
     // Up the valley: the normal of the mirror stays where it is.
     const Quaternion start = turned(truth, normal * (k % 2 == 0 ? 0.1 : -0.1));
-    const auto fits = inverse::fit_turnings(model, likelihood, {{start, {}}}, {},
-                                            {inverse::Freedom::Attitude, 200, 12, 24, 1e-3, 1});
-    ASSERT_EQ(fits.size(), 1u);
-    EXPECT_TRUE(fits[0].is_converged) << k;
-    const auto at_truth =
-        inverse::compare_all(model, likelihood, std::vector<Turning>{{truth, {}}}, {}, 1);
-    // A minimum lies below the truth; steps end where three in a row gain less than .01 each.
-    EXPECT_LT(fits[0].at.chi2, at_truth[0].chi2 + 0.1) << k;
+    expect_rests_below({truth, {}}, {start, {}}, curve, inverse::Freedom::Attitude);
   }
 }
 
 TEST(TurningFit, OfASpinRestsAtTheBottomToo) {
   ObservedCurve curve = pass(40);
-  const CurveErrors errors = no_floor();
+  const Quaternion glint = glinting_at(curve.epochs[20]);
+  inverse::Step off(6);
+  off << 0.003, -0.002, 0.002, 0.003, 0.002, -0.002;
   for (int k = 0; k < 3; ++k) {
-    const Turning truth{turned(glinting_at(curve.epochs[20]), normal * k), {0, 0, 2e-3}};
+    SCOPED_TRACE(k);
+    const Turning truth{turned(glint, normal * k), {0, 0, 2e-3}};
     observe(curve, glinting, truth, 100, static_cast<std::uint64_t>(k));
-    const CurveModel model(curve, glinting, {0, 1});
-    const CurveLikelihood likelihood(curve, errors);
-    inverse::Step off(6);
-    off << 0.003, -0.002, 0.002, 0.003, 0.002, -0.002;
-    const Turning start = inverse::stepped(truth, off, inverse::span_of(curve));
-    const auto fits =
-        inverse::fit_turnings(model, likelihood, {start}, {},
-                              {inverse::Freedom::AttitudeAndRate, 200, 12, 24, 1e-3, 1, true});
-    ASSERT_EQ(fits.size(), 1u);
-    EXPECT_TRUE(fits[0].is_converged) << k;
-    const auto at_truth =
-        inverse::compare_all(model, likelihood, std::vector<Turning>{truth}, {}, 1);
-    EXPECT_LT(fits[0].at.chi2, at_truth[0].chi2 + 0.1) << k;
-  }
-}
-
-TEST(TurningFit, OfASpinRestsAtTheBottomToo) {
-  ObservedCurve curve = pass(40);
-  const CurveErrors errors = no_floor();
-  for (int k = 0; k < 3; ++k) {
-    const Turning truth{turned(glinting_at(curve.epochs[20]), normal * k), {0, 0, 2e-3}};
-    observe(curve, glinting, truth, 100, static_cast<std::uint64_t>(k));
-    const CurveModel model(curve, glinting, {0, 1});
-    const CurveLikelihood likelihood(curve, errors);
-    inverse::Step off(6);
-    off << 0.003, -0.002, 0.002, 0.003, 0.002, -0.002;
-    const Turning start = inverse::stepped(truth, off, inverse::span_of(curve));
-    const auto fits =
-        inverse::fit_turnings(model, likelihood, {start}, {},
-                              {inverse::Freedom::AttitudeAndRate, 200, 12, 24, 1e-3, 1, true});
-    ASSERT_EQ(fits.size(), 1u);
-    EXPECT_TRUE(fits[0].is_converged) << k;
-    const auto at_truth =
-        inverse::compare_all(model, likelihood, std::vector<Turning>{truth}, {}, 1);
-    EXPECT_LT(fits[0].at.chi2, at_truth[0].chi2 + 0.1) << k;
+    expect_rests_below(truth, inverse::stepped(truth, off, inverse::span_of(curve)), curve,
+                       inverse::Freedom::AttitudeAndRate);
   }
 }
 
