@@ -32,7 +32,7 @@ std::string with_month(std::string_view text) {
   if (thousands < 0 || units < 0 || units > 9)
     return std::string(text);
   const int year = 10 * thousands + units;
-  if (day < 1 || day > (is_leap_year(year) ? 366 : 365))
+  if (day < 1 || day > days_in_year(year))
     return std::string(text);
   const std::array<int, 12> days{
       31, is_leap_year(year) ? 29 : 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
@@ -80,6 +80,8 @@ Epoch<Tai> tai_from(Epoch<Tai> date, TimeSystem system) {
 }
 
 } // namespace
+
+int days_in_year(int year) { return is_leap_year(year) ? 366 : 365; }
 
 bool is_leap_year(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
 

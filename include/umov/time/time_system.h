@@ -17,6 +17,9 @@ std::optional<TimeSystem> time_system_from(std::string_view name);
 /// Whether a year of the Gregorian calendar has 366 days.
 bool is_leap_year(int year);
 
+/// 366 of a leap year, else 365.
+int days_in_year(int year);
+
 /// Reads "2008-09-20T12:25:40.104192" or, with a day of the year, "2006-090T05:00:00.071" (CCSDS
 /// 301.0-B-4, codes A and B); a Z at the end is allowed. BadInput for anything else, and before
 /// 1972. TDB as seen from the Earth's centre (ERFA's series, Fairhead & Bretagnon 1990).

@@ -98,7 +98,7 @@ Result<void> read_epoch(const Line &line, const std::string &file, ElementSet &s
   // Two digits turn over at 57: the first satellite flew in 1957.
   set.epoch_year = two_digits < 57 ? 2000 + two_digits : 1900 + two_digits;
   const Field day(line, file, 21, 32, "the epoch's day of year");
-  const int days = is_leap_year(set.epoch_year) ? 366 : 365;
+  const int days = days_in_year(set.epoch_year);
   const std::string expected = "1.0 to below " + std::to_string(days + 1) + " in " +
                                std::to_string(set.epoch_year) + " (1.0 is 1 January, 0h)";
   UMOV_ASSIGN(value, day.number(expected));

@@ -70,11 +70,19 @@ struct TleEpoch {
 };
 
 TleEpoch epoch_of(const ElementSet &set) {
-  const int days = is_leap_year(set.epoch_year) ? 366 : 365;
   constexpr double half_of_last_digit = 5e-9;
-  if (set.epoch_day_of_year >= days + 1 - half_of_last_digit)
+  if (set.epoch_day_of_year >= days_in_year(set.epoch_year) + 1 - half_of_last_digit)
     return {set.epoch_year + 1, 1};
   return {set.epoch_year, set.epoch_day_of_year};
+}
+
+/// A day of the year of eight decimals has no place for a leap second: what lies within one, or
+/// rounds up to it, would be read as the midnight after it, a second late.
+bool is_lost_in_leap_second(const ElementSet &set) {
+  const TleEpoch epoch = epoch_of(set);
+  const Epoch<Utc> read = utc_from_year_day(epoch.year, std::round(epoch.day * 1e8) * 1e-8);
+  const double by_clock = 86400 * clock_days_between(read, set.epoch);
+  return std::abs(seconds_between(read, set.epoch) - by_clock) > 0.5;
 }
 
 std::string lines_of(const ElementSet &set) {
@@ -117,6 +125,11 @@ std::string beyond_columns(const ElementSet &set) {
         std::pair("the second derivative of the mean motion", set.mean_motion_ddot)})
     if (!(std::abs(value) < exponent_max))
       return fmt::format("{} of {} is {:g}; a TLE holds less than 1e9", what, number, value);
+  if (is_lost_in_leap_second(set))
+    return fmt::format(
+        "the epoch of {} is {}, at a leap second, which a TLE's day of the year does "
+        "not tell from the second after it",
+        number, to_iso_microseconds(set.epoch));
   return "";
 }
 

@@ -335,6 +335,7 @@ TEST(Elements, AnEpochThatRoundsUpToTheNextYearIsWrittenAsThat) {
   ElementSet set = read_sample("omm.kvn")[0];
   set.epoch_year = 2020;
   set.epoch_day_of_year = 367 - 1e-4 / 86400; // 1e-4 s before 2021: 367.00000000
+  set.epoch = utc_from_year_day(set.epoch_year, set.epoch_day_of_year);
   Diagnostics said;
   const auto text = write_elements({set}, ElementsForm::Tle, set.epoch, said);
   ASSERT_TRUE(text) << text.error().text();
@@ -352,7 +353,11 @@ TEST(Elements, ATleIsNotWrittenWhereItWouldBeReadAsAnotherOrbit) {
     const auto text = write_elements({set}, ElementsForm::Tle, good.epoch, said);
     return text ? "" : text.error().message;
   };
-  EXPECT_EQ(refusal([](ElementSet &set) { set.epoch_year = 2056; }), "");
+  EXPECT_EQ(refusal([](ElementSet &set) {
+              set.epoch_year = 2056;
+              set.epoch = utc_from_year_day(2056, set.epoch_day_of_year);
+            }),
+            "");
   EXPECT_NE(refusal([](ElementSet &set) { set.epoch_year = 2057; }).find("is in 2057; the two"),
             std::string::npos);
   EXPECT_NE(refusal([](ElementSet &set) { set.epoch_year = 1956; }).find("1957 to 2056"),
@@ -369,6 +374,32 @@ TEST(Elements, ATleIsNotWrittenWhereItWouldBeReadAsAnotherOrbit) {
             std::string::npos);
   EXPECT_NE(refusal([](ElementSet &set) { set.bstar = -1e12; }).find("B* of"), std::string::npos);
   EXPECT_NE(refusal([](ElementSet &set) { set.mean_motion_ddot = 1e9; }).find("Write OMM instead"),
+            std::string::npos);
+}
+
+// IERS Bulletin C 52: UTC had 2016-12-31T23:59:60, and clocks that know no leap seconds read the
+// second after it the same. A TLE's last digit is 0.9 ms.
+TEST(Elements, ATleIsNotWrittenAtALeapSecond) {
+  const ElementSet good = read_sample("omm.kvn")[0];
+  const auto written_at = [&good](const char *time, int year, double day) {
+    ElementSet set = good;
+    set.epoch = *utc_from_iso(time);
+    set.epoch_year = year;
+    set.epoch_day_of_year = day;
+    Diagnostics said;
+    const auto text = write_elements({set}, ElementsForm::Tle, good.epoch, said);
+    return text ? *text : text.error().message;
+  };
+  EXPECT_NE(written_at("2016-12-31T23:59:60Z", 2016, 367).find("23:59:60.000Z, at a leap second"),
+            std::string::npos);
+  EXPECT_NE(written_at("2015-06-30T23:59:60.5Z", 2015, 182 + 0.5 / 86400).find("at a leap second"),
+            std::string::npos);
+  // 0.1 ms before it, which eight decimals round up.
+  EXPECT_NE(written_at("2016-12-31T23:59:59.9999Z", 2016, 367 - 1e-4 / 86400).find("leap second"),
+            std::string::npos);
+  EXPECT_NE(written_at("2016-12-31T23:59:59Z", 2016, 367 - 1.0 / 86400).find(" 16366.99998843 "),
+            std::string::npos);
+  EXPECT_NE(written_at("2017-01-01T00:00:00Z", 2017, 1).find(" 17001.00000000 "),
             std::string::npos);
 }
 
