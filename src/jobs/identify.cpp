@@ -226,15 +226,20 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
 
 Result<void> OwnLights::doubt(std::size_t k, const ObservedCurve &curve, const PoseAnswer &pose,
                               IdentityWords &words) {
-  if (pose.modes.empty() || words.verdict == Verdict::NoFit)
+  if (pose.modes.empty())
     return {};
   UMOV_ASSIGN(scenario, ready_.scenario(scenarios_.at(k)));
   UMOV_ASSIGN(share, share_between(*scenario, *lights_.at(k), curve, pose.modes.front().turning,
                                    options_, monitor_));
   words.light_between = share;
   words.is_between_fitted = lights_.at(k)->between.has_value();
-  if (!words.is_between_fitted)
-    doubt_direct_light(share, request_.observed.errors.floor, words.verdict, words.notes);
+  if (words.is_between_fitted)
+    return {};
+  const double floor = request_.observed.errors.floor;
+  doubt_direct_light(share, floor, words.verdict, words.notes);
+  // "None of these" rests on what each object's light would be, and here that is not known.
+  if (words.verdict == Verdict::NoFit && is_too_much_between(share, floor))
+    words.verdict = Verdict::Undetermined;
   return {};
 }
 

@@ -71,11 +71,17 @@ Result<double> share_between(const Scenario &scenario, const SearchedLight &read
   return median_of(std::move(shares));
 }
 
+/// What light between surfaces may be without a word.
+static double allowed_between(double floor) { return std::max(floor, 0.005); }
+
+bool is_too_much_between(double share, double floor) {
+  constexpr double much = 2.5; // as of what the best attitude misses
+  return share > much * allowed_between(floor);
+}
+
 void doubt_direct_light(double share, double floor, Verdict &verdict,
                         std::vector<std::string> &notes) {
-  constexpr double much = 2.5, least = 0.005; // as of what the best attitude misses
-  const double allowed = std::max(floor, least);
-  if (!(share > allowed))
+  if (!(share > allowed_between(floor)))
     return;
   notes.push_back(fmt::format(
       "light from surface to surface, which this fit leaves out, would be {:.2g} of I in the best "
@@ -84,7 +90,7 @@ void doubt_direct_light(double share, double floor, Verdict &verdict,
       share, floor,
       verdict == Verdict::NoFit ? "that no attitude fits may be its doing"
                                 : "the set may lie beside the truth"));
-  if (share > much * allowed && verdict == Verdict::Determined)
+  if (is_too_much_between(share, floor) && verdict == Verdict::Determined)
     verdict = Verdict::Undetermined;
 }
 

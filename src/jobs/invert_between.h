@@ -13,6 +13,8 @@ struct Judgement;
 Result<double> share_between(const Scenario &scenario, const SearchedLight &ready,
                              const ObservedCurve &curve, const Turning &at,
                              const JobOptions &options, const Monitor &monitor);
+/// Whether it is so much more than the floor that an answer of direct light is none.
+bool is_too_much_between(double share, double floor);
 /// Where the search left it out: says so if it is more than the floor that was asked for, and takes
 /// a verdict back where it is far more: what grows with the misfit covers errors of each row, not
 /// one that all share.

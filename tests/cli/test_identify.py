@@ -9,6 +9,7 @@ from astropy.table import Table
 
 from conftest import ROOT
 from test_invert import TRUTHS, constant, observe, scene, variant  # noqa: F401
+from test_invert_between import TRUTH as METAL_TRUTH, body
 
 NAMES = ("plain", "metal", "dark", "white")
 PLACE = """umov = 1
@@ -138,3 +139,18 @@ def test_a_scenario_of_other_bands_is_told_whoever_leads(umov, scene, library, t
     (tmp_path / "white.toml").write_text(text.replace('"paper_rgb"', '["nm:500"]'))
     done = umov("identify", "obs.csv", "--library", "lib", "--scenario", "place.toml", "--objects", "metal.toml", "white.toml")
     assert done.code == 3 and "white.toml" in done.err and "nm:500" in done.err
+
+
+def test_none_of_these_is_not_said_where_light_between_surfaces_is_missing(umov, scene, tmp_path):
+    """A box-wing of rough metals, a tenth of whose light touches several surfaces, against a library that has it and a fit that
+    leaves that light out: no attitude explains the data, and still it is the one."""
+    assert umov("mesh", "make", "box-wing", "--facets", 600, "-o", "wing.obj", "-q").code == 0
+    truth = body(umov, scene, tmp_path, METAL_TRUTH, "rays", "truth")
+    assert umov("run", truth, "-q", "--set", "render.bounces=3").code == 0
+    observe(tmp_path, "obs.csv", 100, 1)
+    body(umov, scene, tmp_path, [1, 0, 0, 0], "masks", "wing")
+    (tmp_path / "place.toml").write_text(PLACE.format(root=ROOT))
+    assert umov("library", "build", "wing.toml", "-o", "lib", "-q").code == 0
+    found = asked(umov, "--objects", "wing.toml")
+    assert found["none_of_these"] > 0.95 and found["verdict"] == "undetermined"
+    assert found["light_between"] > 0.05 and any("that no attitude fits may be its doing" in note for note in found["notes"])
