@@ -2,6 +2,7 @@
 import csv
 import os
 import pathlib
+import resource
 import subprocess
 
 import pytest
@@ -14,6 +15,12 @@ UMOV = ROOT / "build/release/apps/cli/umov"
 def cache_of_its_own(tmp_path_factory):
     """Masks of the tests stay out of the user's cache."""
     os.environ["XDG_CACHE_HOME"] = str(tmp_path_factory.mktemp("cache"))
+
+
+def processor_s_of_children():
+    """Seconds of the processor of all commands that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 class Outcome:

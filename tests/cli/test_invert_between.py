@@ -1,9 +1,9 @@
 """umov invert with light between surfaces in the fit: data by paths, of a body a quarter of whose light touches several surfaces;
 the fit interpolates what chains light (docs/theory/inverse.md, 6.1). Truth is known from how the data were made."""
 import json
-import resource
 
 import pytest
+from conftest import processor_s_of_children
 from test_invert import apart, in_set, observe, scene  # noqa: F401
 
 METALS = 'bus = "gold"\npanels = "silicon"\ndish = "aluminium"\ntank = "smooth"'
@@ -64,12 +64,11 @@ def test_chains_are_drawn_once_for_all_materials(umov, scene, tmp_path):
     body(umov, scene, tmp_path, TRUTH, "auto", "fit")
 
     def ask(*words):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        before = processor_s_of_children()
         done = umov("invert", *words, "--scenario", "fit.toml", "-o", "answer", "--force", "--json", "--set", "render.bounces=3",
                     "--set", "render.between=chains")
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
         assert done.code == 0, done.err
-        return json.loads(done.out), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return json.loads(done.out), processor_s_of_children() - before
 
     _, of_two = ask("material", "obs.csv", "--group", "panels", "--candidates", "silicon,gold")
     found, of_four = ask("material", "obs.csv", "--group", "panels", "--candidates", "gold,silicon,aluminium,smooth")

@@ -2,7 +2,6 @@
 import json
 import os
 import pathlib
-import resource
 import shutil
 import signal
 import subprocess
@@ -11,7 +10,7 @@ import time
 import pytest
 from astropy.table import Table
 
-from conftest import ROOT, UMOV
+from conftest import ROOT, UMOV, processor_s_of_children
 from test_identify import NAMES, library  # noqa: F401
 from test_invert import TRUTHS, observe, scene  # noqa: F401
 
@@ -226,13 +225,12 @@ def seconds_to_stop(process, stop):
     """Seconds of the processor that it takes from when its job is being made until it has ended, and what it said of that."""
     while processor_s(process) < 0.4:
         time.sleep(0.01)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    before = processor_s_of_children()
     had = processor_s(process)
     stop(process)
     told = process.stderr.read()
     process.wait(timeout=120)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime - had, told
+    return processor_s_of_children() - before - had, told
 
 
 #: A fifth of a second, and what the pages take that are given back; /proc counts hundredths.

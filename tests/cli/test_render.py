@@ -1,6 +1,5 @@
 """umov render: pictures in files."""
 import math
-import resource
 import struct
 import zlib
 
@@ -8,7 +7,7 @@ import matplotlib
 import matplotlib.image
 import numpy as np
 
-from conftest import ROOT
+from conftest import ROOT, processor_s_of_children
 
 SCENE = """umov = 1
 [[object]]
@@ -230,11 +229,11 @@ def test_options_that_would_change_nothing_are_refused(umov, scenario, tmp_path)
 
 
 def cpu_of(umov, material, tmp_path):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    before = processor_s_of_children()
     (tmp_path / "s.toml").write_text(SCENE.replace("paper_al", material).replace('"paper_rgb"', '["Bessell.V"]'))
     done = umov("render", "s.toml", "--sun", 1, 0, 0, "--observer", 0.5, 0.8, 0, "--size", 128, "-o", f"{material}.png")
     assert done.code == 0, done.err
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    return processor_s_of_children() - before
 
 
 def test_films_cost_no_more_for_each_point_of_a_picture(umov, tmp_path):
