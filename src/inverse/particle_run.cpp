@@ -13,6 +13,9 @@
 namespace umov::inverse {
 namespace {
 
+/// Coins of a round have a stream of their own.
+constexpr std::uint32_t coins = 0x20000u;
+
 /// Values of -2 ln of particles. What is no number has no weight.
 template <class Value>
 std::vector<double> values_of(const std::vector<Particle> &draws, Value value) {
@@ -224,7 +227,6 @@ bool ParticleRun::try_local(const Density &density, const Round &round) {
 template <class Propose>
 bool ParticleRun::try_steps(const Density &density, const Round &round, std::size_t first,
                             std::size_t stride, Propose propose) {
-  constexpr std::uint32_t coins = 0x20000u; // a stream of their own
   const std::size_t count = (draws_.size() + stride - 1 - first) / stride;
   std::vector<Tried> proposals(count);
   parallel_for(count, options_.threads,
@@ -232,19 +234,49 @@ bool ParticleRun::try_steps(const Density &density, const Round &round, std::siz
   std::vector<Turning> turnings;
   for (const Tried &one : proposals)
     turnings.push_back(one.to);
+  // Where the light of the last steps has a part, what quick light refuses is not asked for it.
+  const Density asked = density.last > 0 ? Density{density.start, 1, 0} : density;
   std::vector<Particle> tried;
-  if (!light(density, turnings, tried))
+  if (!light(asked, turnings, tried))
     return false;
+  std::vector<std::size_t> taken; // of those that were tried
   for (std::size_t j = 0; j < tried.size(); ++j) {
     const std::size_t k = first + j * stride;
     const double coin = uniform4(round.seed, round.stream + coins, k)[1];
-    if (!(std::log(coin) <
-          (density.minus_2_log(draws_[k]) - density.minus_2_log(tried[j])) / 2 + proposals[j].back))
-      continue;
+    if (std::log(coin) < asked.log_ratio(tried[j], draws_[k]) + proposals[j].back)
+      taken.push_back(j);
+  }
+  if (density.last > 0 && !keep_by_last_light(density, asked, round, first, stride, tried, taken))
+    return false;
+  for (const std::size_t j : taken) {
+    const std::size_t k = first + j * stride;
     draws_[k] = std::move(tried[j]);
     has_moved_[k] = 1;
     ++accepted_;
   }
+  return true;
+}
+
+bool ParticleRun::keep_by_last_light(const Density &density, const Density &asked,
+                                     const Round &round, std::size_t first, std::size_t stride,
+                                     std::vector<Particle> &tried,
+                                     std::vector<std::size_t> &taken) const {
+  std::vector<Turning> turnings;
+  for (const std::size_t j : taken)
+    turnings.push_back(tried[j].turning);
+  std::vector<Particle> lit;
+  if (!light({0, 0, 1}, turnings, lit))
+    return false;
+  std::vector<std::size_t> kept;
+  for (std::size_t t = 0; t < taken.size(); ++t) {
+    const std::size_t j = taken[t], k = first + j * stride;
+    tried[j].last = std::move(lit[t].last);
+    const double coin = uniform4(round.seed, round.stream + coins, k)[2];
+    if (std::log(coin) <
+        density.log_ratio(tried[j], draws_[k]) - asked.log_ratio(tried[j], draws_[k]))
+      kept.push_back(j);
+  }
+  taken = std::move(kept);
   return true;
 }
 

@@ -22,6 +22,10 @@ struct Density {
     return start * p.start + (quick > 0 ? quick * p.quick.minus_2_log : 0) +
            (last > 0 ? last * p.last.minus_2_log : 0);
   }
+  /// ln of how much denser it is at one than at another.
+  [[nodiscard]] double log_ratio(const Particle &at, const Particle &than) const {
+    return (minus_2_log(than) - minus_2_log(at)) / 2;
+  }
 };
 
 /// Sequential Monte Carlo (Del Moral, Doucet & Jasra 2006).
@@ -59,6 +63,12 @@ private:
   template <class Propose>
   bool try_steps(const Density &density, const Round &round, std::size_t first, std::size_t stride,
                  Propose propose);
+  /// Of steps that `asked`, a density of quick light, has taken, those that are taken by `density`
+  /// too: delayed acceptance (Christen & Fox 2005, J. Comput. Graph. Stat. 14, 795), after which
+  /// particles have this one, and light of the last steps is asked of the few that may be taken.
+  bool keep_by_last_light(const Density &density, const Density &asked, const Round &round,
+                          std::size_t first, std::size_t stride, std::vector<Particle> &tried,
+                          std::vector<std::size_t> &taken) const;
   /// Particles with the light that a density asks for; false if it was stopped.
   bool light(const Density &density, std::span<const Turning> turnings,
              std::vector<Particle> &out) const;

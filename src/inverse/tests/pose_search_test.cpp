@@ -141,6 +141,43 @@ TEST(PoseSearch, AQuickModelSearchesAndTheModelItselfAnswers) {
   EXPECT_GT(quick.poses_lit(), 8'000u * 8);    // the grid's first round
 }
 
+// Steps that quick light refuses are not lit by the light of the last steps: the posterior is that
+// of a search that has no other light all the same.
+TEST(PoseSearch, ParticlesAreLedFromQuickLightToThePosteriorOfTheLast) {
+  const Box box;
+  const PoseLighting far_off = [&](std::span<const Pose> poses, StokesTable &out) {
+    (void)box(poses, out);
+    for (std::size_t k = 0; k < out.i.size(); ++k)
+      out.i[k] *= 1 + 0.8 * std::sin(3 * poses[k / out.bands].sun.x);
+    return true;
+  };
+  const auto mean_along = [](const PoseAnswer &answer) {
+    double sum = 0;
+    for (const PoseSample &s : answer.samples)
+      sum += s.weight * rotation_from<Body, Gcrs>(s.turning.attitude).row(0).z;
+    return sum;
+  };
+  constexpr int trials = 4;
+  double evidence = 0, along = 0;
+  std::size_t lit = 0;
+  for (std::uint64_t t = 0; t < trials; ++t) {
+    ObservedCurve curve = pass(16);
+    observe(curve, box, {any_attitude(107, t), {}}, 3, t);
+    const CurveModel model(curve, box, {0, 1}), quick(curve, far_off, {0, 1}),
+        own(curve, box, {0, 1});
+    const auto answer = search_pose({model, quick, quick}, small()),
+               alone = search_pose(own, small());
+    ASSERT_TRUE(answer && alone);
+    evidence += (answer->log_evidence - alone->log_evidence) / trials;
+    along += (mean_along(*answer) - mean_along(*alone)) / trials;
+    lit += model.poses_lit();
+  }
+  // Two runs of one posterior are up to .15 apart in ln evidence, and .05 in this mean.
+  EXPECT_NEAR(evidence, 0, 0.2);
+  EXPECT_NEAR(along, 0, 0.04);
+  EXPECT_LT(lit, 700'000U); // 614,000; 814,000 where every step was lit
+}
+
 TEST(PoseSearch, AlongTheValleyOfAGlintTheSearchGoesToTheEnd) {
   // A mirror a thousand times as bright as the rest holds two directions a hundred times better
   // than the third: the fit has to follow a valley that bends.
