@@ -55,6 +55,10 @@ void try_bytes(const std::string &bytes) {
       return;
     }
     found = journal->count();
+    auto other = fuzz::must(Journal::open(path, job), "a journal in use is no error");
+    fuzz::require(other.found() == Journal::Found::Busy, "one at a time has a journal");
+    other.keep({1u << 30, 7}, "of the other");
+    fuzz::require(other.count() == 0 && !other.problem(), "the other one keeps nothing");
     // What follows the last whole block goes; what was found stays.
     journal->keep({1u << 30, 7}, "new");
     journal->remark(1u << 30, "a word");
@@ -67,11 +71,31 @@ void try_bytes(const std::string &bytes) {
   fuzz::require(!std::filesystem::exists(path), "a finished journal goes");
 }
 
+/// A block of any bytes goes into a new journal and comes out of it; none goes into a folder.
+void try_block(const std::string &bytes) {
+  const auto path = Journal::name_for(scratch());
+  {
+    auto journal = fuzz::must(Journal::open(path, job), "a journal that is not there yet");
+    journal.keep({1, 2}, bytes);
+    fuzz::require(!journal.problem() && journal.find({1, 2}) == bytes, "a block is kept");
+  }
+  auto journal = fuzz::must(Journal::open(path, job), "a journal is one");
+  fuzz::require(journal.found() == Journal::Found::Ours && journal.find({1, 2}) == bytes &&
+                    !journal.find({2, 1}),
+                "its block is found again, and no other");
+  journal.finish();
+  fuzz::require(!fuzz::is_read(Journal::open(path.parent_path(), job)), "a folder is no journal");
+  auto nowhere = fuzz::must(Journal::open(fuzz::nowhere, job), "trouble shows with a block");
+  nowhere.keep({1, 2}, bytes);
+  fuzz::require(nowhere.problem() && nowhere.count() == 0, "and is said");
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
   const std::string_view input = fuzz::text_of(data, size);
   try_bytes(std::string(input));
   try_bytes(with_hashes(input));
+  try_block(std::string(input));
   return 0;
 }
