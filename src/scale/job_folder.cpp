@@ -1,7 +1,5 @@
 #include <umov/scale/job_folder.h>
 
-#include "scale/whole_number.h"
-
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -10,20 +8,16 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <memory>
-#include <new>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <sys/stat.h>
 #include <umov/core/files.h>
 #include <umov/core/temporary.h>
-#include <umov/core/text.h>
 #include <unistd.h>
 
 namespace umov::scale {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 constexpr const char *job_file = "job.json";
 /// Above so many shards they stand in folders of a thousand.
@@ -243,27 +237,6 @@ std::vector<FailedShard> JobFolder::failed() const {
       out.push_back(std::move(*one));
   }
   return out;
-}
-
-std::string to_json(const FailedShard &failed, const jobs::IndexRange &range) {
-  const json out{{"index", failed.index},       {"first", range.first},
-                 {"count", range.count},        {"code", failed.code},
-                 {"attempts", failed.attempts}, {"message", failed.message},
-                 {"host", failed.host}};
-  return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
-}
-
-std::optional<FailedShard> failed_from_json(const std::string &text) {
-  try {
-    const json all = json::parse(text);
-    return FailedShard{whole_at(all, "index"), code_at(all), whole_at(all, "attempts"),
-                       printable(all.at("message").get<std::string>()),
-                       printable(all.at("host").get<std::string>())};
-  } catch (const std::bad_alloc &) {
-    throw;
-  } catch (const std::exception &) {
-    return std::nullopt; // damaged: the shard is tried again as if nothing were known
-  }
 }
 
 } // namespace umov::scale

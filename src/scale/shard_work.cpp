@@ -1,24 +1,16 @@
 #include <umov/scale/shard_work.h>
 
 #include "scale/this_process.h"
-#include "scale/whole_number.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <fmt/format.h>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
-#include <umov/core/text.h>
 #include <umov/scale/rows_file.h>
 
 namespace umov::scale {
 namespace {
-
-using nlohmann::json;
-constexpr std::array<const char *, 5> status_names{"done", "there", "failed", "exhausted",
-                                                   "refused"};
 
 /// What a process was held to; lets it have enough more to say so, as there may be nothing left.
 std::string out_of_memory() {
@@ -54,42 +46,6 @@ Result<void> fill(const JobFolder &folder, jobs::RangedJob &job, const jobs::Mon
 }
 
 } // namespace
-
-std::string to_json(const ShardRecord &r) {
-  const json out{
-      {"index", r.index},     {"status", status_names[static_cast<std::size_t>(r.status)]},
-      {"code", r.code},       {"message", r.message.substr(0, 500)},
-      {"file", r.file},       {"sha256", r.sha256},
-      {"rows", r.rows},       {"bytes", r.bytes},
-      {"seconds", r.seconds}, {"cpu_s", r.cpu_s}};
-  return out.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
-Result<ShardRecord> record_from_json(const std::string &line) {
-  try {
-    const json all = json::parse(line);
-    const auto status = all.at("status").get<std::string>();
-    ShardRecord out;
-    for (std::size_t k = 0; k < status_names.size(); ++k)
-      if (status == status_names[k])
-        out.status = static_cast<ShardRecord::Status>(k);
-    out.index = whole_at(all, "index");
-    out.code = code_at(all);
-    out.message = printable(all.at("message").get<std::string>());
-    all.at("file").get_to(out.file);
-    all.at("sha256").get_to(out.sha256);
-    out.rows = whole_at(all, "rows");
-    out.bytes = whole_at(all, "bytes");
-    all.at("seconds").get_to(out.seconds);
-    all.at("cpu_s").get_to(out.cpu_s);
-    return out;
-  } catch (const std::bad_alloc &) {
-    throw; // of what is whole
-  } catch (const std::exception &problem) {
-    return fail(ErrorCode::Internal,
-                fmt::format("a worker said \"{}\": {}", printable(line), problem.what()));
-  }
-}
 
 Result<void> check_same_job(const JobFolder &folder, const jobs::RangedJob &job) {
   const std::string difference = first_difference(folder.lock().identity, job.identity());
