@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <span>
 #include <tuple>
 #include <umov/core/quantity.h>
 #include <utility>
@@ -23,9 +24,9 @@ std::vector<double> distinct(std::vector<double> values) {
 
 using Axis = std::vector<double>::const_iterator;
 
-/// Each albedo takes ten thousand values, so that of a table with more angles and wavelengths than
-/// any goniometer has some are looked at only.
-constexpr std::size_t most_checked = 500;
+/// Each albedo takes ten thousand values, which take three times as long in the plane of incidence:
+/// of a table with more angles or wavelengths some are looked at only.
+constexpr std::size_t most_checked = 32, most_checked_in_plane = 20;
 
 /// At most `count` values of an axis, and one at least, evenly chosen with its ends.
 std::vector<double> spread(const std::vector<double> &axis, std::size_t count) {
@@ -34,6 +35,23 @@ std::vector<double> spread(const std::vector<double> &axis, std::size_t count) {
   std::vector<double> out{axis.front()};
   for (std::size_t k = 1; k < count; ++k)
     out.push_back(axis[k * (axis.size() - 1) / (count - 1)]);
+  return out;
+}
+
+/// At most `count` wavelengths, and one at least: those that send most towards the directions of
+/// the table, as an albedo would count it. `samples` in their order.
+std::vector<double> brightest(const std::vector<BrdfSample> &samples, std::size_t count) {
+  constexpr double least = 0.01; // straight up and along the surface count a little, too
+  std::vector<std::pair<double, double>> sent; // less what is sent, for the largest first; nm
+  for (const BrdfSample &s : samples) {
+    if (sent.empty() || sent.back().second != s.wavelength_nm)
+      sent.emplace_back(0, s.wavelength_nm);
+    sent.back().first -= s.mueller[0] * std::max(least, std::sin(2 * s.theta_o_deg * pi / 180));
+  }
+  std::ranges::sort(sent);
+  std::vector<double> out;
+  for (std::size_t k = 0; k < std::clamp<std::size_t>(count, 1, sent.size()); ++k)
+    out.push_back(sent[k].second);
   return out;
 }
 
@@ -76,6 +94,26 @@ Place place_of(const std::vector<double> &axis, double at) {
   const auto high =
       static_cast<std::size_t>(std::upper_bound(axis.begin(), axis.end(), at) - axis.begin());
   return {high - 1, high, (at - axis[high - 1]) / (axis[high] - axis[high - 1])};
+}
+
+/// Calls `take` with the weights and numbers of the nodes about a place.
+template <class Take>
+void for_nodes(const std::array<std::vector<double>, 4> &axes, const std::array<double, 4> &place,
+               const Take &take) {
+  std::array<Place, 4> p;
+  for (std::size_t k = 0; k < 4; ++k)
+    p[k] = place_of(axes[k], place[k]);
+  for (unsigned corner = 0; corner < 16; ++corner) {
+    double weight = 1;
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool high = (corner >> k & 1) != 0;
+      weight *= high ? p[k].t : 1 - p[k].t;
+      at = at * axes[k].size() + (high ? p[k].high : p[k].low);
+    }
+    if (weight > 0)
+      take(weight, at);
+  }
 }
 
 bool holds(const std::vector<double> &axis, double at) {
@@ -195,8 +233,9 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
     }
   out.asymmetry_ = largest > 0 ? worst / largest : 0;
   double albedo = 0, at = 0;
-  for (const double nm : spread(out.axes_[0], most_checked / out.axes_[1].size()))
-    for (const double i : spread(out.axes_[1], most_checked))
+  const std::size_t most = out.is_in_plane_ ? most_checked_in_plane : most_checked;
+  for (const double nm : brightest(samples, most / out.axes_[1].size()))
+    for (const double i : spread(out.axes_[1], most))
       if (const double a = i < 90 ? out.albedo(nm, i * pi / 180) : 0; a > albedo) {
         albedo = a;
         at = i;
@@ -219,21 +258,11 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
 }
 
 Matrix MeasuredBrdf::look_up(double nm, double i, double o, double phi) const {
-  const Place p[4] = {place_of(axes_[0], nm), place_of(axes_[1], i), place_of(axes_[2], o),
-                      place_of(axes_[3], phi)};
   Matrix out{};
-  for (unsigned corner = 0; corner < 16; ++corner) {
-    double weight = 1;
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool high = (corner >> k & 1) != 0;
-      weight *= high ? p[k].t : 1 - p[k].t;
-      at = at * axes_[k].size() + (high ? p[k].high : p[k].low);
-    }
-    if (weight > 0)
-      for (std::size_t k = 0; k < 16; ++k)
-        out[k] += weight * values_[at][k];
-  }
+  for_nodes(axes_, {nm, i, o, phi}, [&](double weight, std::size_t at) {
+    for (std::size_t k = 0; k < 16; ++k)
+      out[k] += weight * values_[at][k];
+  });
   return out;
 }
 
@@ -265,8 +294,14 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
   // incidence on the half vector = (i + s)/2: each measured i gives the wanted tilt twice.
   const double tilt = tilt_rad * 180 / pi, wanted = std::abs(incidence_rad) * 180 / pi;
   const double last = axes_[2].back();
-  std::vector<std::pair<double, double>> found; // incidence on the half vector, value
-  found.reserve(6);
+  const auto value_at = [&](double i, double o, double phi) {
+    double out = 0;
+    for_nodes(axes_, {nm, i, o, phi},
+              [&](double weight, std::size_t at) { out += weight * values_[at][0]; });
+    return out;
+  };
+  std::array<std::pair<double, double>, 6> all; // incidence on the half vector, value
+  std::size_t count = 0;
   // The neighbours of the wanted incidence in a stretch of the axis along which it rises or falls.
   const auto take = [&](Axis begin, Axis end, double side, bool is_rising) {
     const Axis at = std::partition_point(
@@ -274,8 +309,7 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
     for (const Axis i : {at, at == begin ? end : at - 1})
       if (i != end) {
         const double s = *i - 2 * side * tilt;
-        found.emplace_back(std::abs(*i - side * tilt),
-                           look_up(nm, *i, std::abs(s), s >= 0 ? 180 : 0)[0]);
+        all[count++] = {std::abs(*i - side * tilt), value_at(*i, std::abs(s), s >= 0 ? 180 : 0)};
       }
   };
   const Axis begin = axes_[1].begin(), end = axes_[1].end();
@@ -289,8 +323,9 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
   if (tilt != 0)
     take(begin, std::partition_point(begin, end, [&](double i) { return i + 2 * tilt <= last; }),
          -1, true);
+  const std::span found(all.data(), count);
   if (found.empty()) // beyond what was measured: the nearest angle that was
-    return look_up(nm, axes_[1].back(), last, 0)[0];
+    return value_at(axes_[1].back(), last, 0);
   std::sort(found.begin(), found.end());
   if (wanted <= found.front().first)
     return found.front().second;

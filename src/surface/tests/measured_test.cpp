@@ -54,6 +54,17 @@ std::vector<double> steps(double last, double step) {
   return out;
 }
 
+/// Lambert's law at as many wavelengths as a spectrometer has, a hundredth of a nanometre apart.
+std::vector<BrdfSample> lambert_spectrum(std::size_t brighter, double m00, double brighter_m00) {
+  std::vector<BrdfSample> out;
+  for (std::size_t k = 0; k < 600; ++k)
+    for (const double o : {0., 45., 90.})
+      for (const double phi : {0., 90., 180.})
+        out.push_back(
+            {500 + .01 * static_cast<double>(k), 0, o, phi, {k == brighter ? brighter_m00 : m00}});
+  return out;
+}
+
 /// What a table in place of its surface gets wrong, at most, in parts of the larger value.
 double true_error(const MeasuredBrdf &table, const Surface &surface, double last) {
   double worst = 0, largest = 0;
@@ -108,6 +119,18 @@ TEST(Measured, ALobeSampledInThePlaneComesBackOutOfIt) {
   }
   // Steps of 10 deg of incidence: linear between curves whose masking and Fresnel factors differ.
   EXPECT_LT(worst, 0.08 * peak);
+}
+
+TEST(Measured, OneWavelengthOfManyThatGivesMoreThanItGetsIsFound) {
+  // A Lambert surface of m00 sends pi m00 of what it gets: .63, and 1.26 at one wavelength of 600.
+  std::vector<std::string> remarks;
+  for (const std::size_t at : {5, 599}) {
+    const auto refused = MeasuredBrdf::from(lambert_spectrum(at, .2, .4), false, false, remarks);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("albedo 1.257 at 0 deg"), std::string::npos)
+        << refused.error().message;
+  }
+  EXPECT_TRUE(MeasuredBrdf::from(lambert_spectrum(5, .2, .3), false, false, remarks));
 }
 
 TEST(Measured, AMuellerTableIsReciprocalToTheLastBit) {
