@@ -68,7 +68,8 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
     all.at("unit").get_to(out.unit);
     out.total = whole_at(all, "total");
     out.per_shard = whole_at(all, "per_shard");
-    all.at("layout").get_to(out.layout);
+    for (const json &rows : all.at("layout"))
+      out.layout.push_back(whole_of(rows, "layout"));
     all.at("tables").get_to(out.tables);
     all.at("order").get_to(out.order);
     out.nothing = all.value("nothing", ""); // jobs begun by 0.1 have none

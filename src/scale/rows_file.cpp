@@ -75,8 +75,8 @@ AboutTable about_table(const json &from, std::size_t end) {
                            one.at("unit").get<std::string>(),
                            one.at("description").get<std::string>(),
                            no_cells(one.at("type").get<std::string>()),
-                           {precision.at(0).get<std::string>(), precision.at(1).get<int>(),
-                            precision.at(2).get<int>()}});
+                           {precision.at(0).get<std::string>(), digits_of(precision.at(1)),
+                            digits_of(precision.at(2))}});
   }
   constexpr std::array<std::size_t, 4> sizes{8, 8, 4, 1};
   for (const json &one : from.at("blocks")) {

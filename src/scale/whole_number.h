@@ -19,6 +19,14 @@ inline std::size_t whole_at(const nlohmann::json &all, const char *key) {
   return whole_of(all.at(key), key);
 }
 
+/// A number of decimals or digits; throws for those that no table has.
+inline int digits_of(const nlohmann::json &value) {
+  constexpr int most = 1000;
+  if (!value.is_number_integer() || value > most || value < -most)
+    throw std::runtime_error("precision is no number of digits");
+  return value.get<int>();
+}
+
 /// An exit code, or 128 and the number of a signal.
 inline int code_at(const nlohmann::json &all) {
   constexpr std::size_t most = 1000;

@@ -2,8 +2,8 @@
 // such a text: it is put in, so that what is behind it is reached.
 
 #include "fuzz/target.h"
+#include "scale/whole_number.h"
 
-#include <nlohmann/json.hpp>
 #include <umov/scale/job_folder.h>
 #include <umov/scale/rows_file.h>
 
@@ -42,11 +42,11 @@ std::string with_key(const std::string &text) {
     scale::JobLock lock;
     all.at("verb").get_to(lock.verb);
     all.at("job").get_to(lock.identity);
-    all.at("total").get_to(lock.total);
-    all.at("per_shard").get_to(lock.per_shard);
+    lock.total = scale::whole_at(all, "total");
+    lock.per_shard = scale::whole_at(all, "per_shard");
     all["key"] = lock.key();
     return all.dump();
-  } catch (const nlohmann::json::exception &) {
+  } catch (const std::exception &) {
     return text;
   }
 }

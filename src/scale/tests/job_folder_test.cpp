@@ -74,6 +74,19 @@ TEST_F(JobFolders, ReadJobsThatWereBegunBeforeTheyHadWarnings) {
   EXPECT_EQ(read->key(), a_job().key()); // what the rows are named after is the same
 }
 
+TEST_F(JobFolders, HaveNoLayoutOfPartsOrOfMoreThanCanBeCounted) {
+  for (const char *bad : {"0.5", "-1", "1e300", "18446744073709551616"}) {
+    std::string text = to_json(a_job());
+    const std::size_t at = text.find("60", text.find("\"layout\""));
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, 2, bad);
+    const auto read = lock_from_json(text, "job.json");
+    ASSERT_FALSE(read) << bad;
+    EXPECT_NE(read.error().message.find("layout is no whole number"), std::string::npos)
+        << read.error().message;
+  }
+}
+
 TEST_F(JobFolders, OfAnotherJobAreRefusedWithTheLineThatDiffers) {
   ASSERT_TRUE(JobFolder::begin(path, a_job()));
   JobLock other = a_job();
