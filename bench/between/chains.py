@@ -3,7 +3,7 @@
 
     .deps/venv/bin/python bench/between/chains.py [--umov PATH] [--poses N] [--seeds N] [BODY ...]
     .deps/venv/bin/python bench/between/chains.py --rate N [--at A ...] [--bands nm:425,nm:550,nm:650] [--poses N]
-        [--surfaces N] [BODY ...]
+        [--surfaces N] [--judge FOLDER] [BODY ...]
 
 For each body, in random attitudes at phase angles from 15 to 150 deg: the part of the poses whose two I, Q, U, V lie
 within the half-widths of both, the mean square of the difference over what they say, and the mean difference in its
@@ -11,13 +11,18 @@ standard errors, of I as it is and in parts of the pose's own. Chains of one see
 each seed is a row. Both programs are umov's; tests/data/bounces has the tables of another one. Minutes per body.
 
 With --rate: CPU time of N such poses on one thread, with masks, mended by rays, for the direct light, as `umov signature`
-takes them by itself, and the time a body takes beforehand, for each accuracy asked of the whole I. The first --poses
-of them, lit beforehand, have the error of I and q = Q/I beside it, direct light included, of those above 1 % of the median
-I, judged by the mean of four runs by paths and rays.
+takes them by itself, once N others have made what they need (chains, masks of their directions), and the time of that, for each
+accuracy asked of the whole I. The first --poses of the others have the error of I and q = Q/I beside it, direct light included,
+of those above 1 % of the median I, judged by the mean of four runs by paths and rays.
+
+The judge takes by far the longest. With --judge its runs are kept in FOLDER, a file for each, and taken from there the next
+time; one of another scene, mesh or accuracy, or of other poses, is refused.
 """
 
 import argparse
 import csv
+import hashlib
+import json
 import os
 import subprocess
 import sys
@@ -168,6 +173,49 @@ def light(umov, folder, between, accuracy, seed):
     return stokes(os.path.join(folder, "o.csv")), time.perf_counter() - begin
 
 
+def fingerprint(folder, accuracy, seed):
+    """Of all that a judge's light follows from: what its scene, mesh and poses are, how it is drawn."""
+    out = {"accuracy": accuracy, "seed": seed}
+    for what, name in (("scene", "s.toml"), ("mesh", "body.obj"), ("poses", "g.csv")):
+        with open(os.path.join(folder, name), "rb") as file:
+            out[what] = hashlib.sha256(file.read()).hexdigest()
+    return out
+
+
+def read_run(path, wanted):
+    """Stokes and half-widths, [2, pose, 4]; an error if they are of something else."""
+    try:
+        with open(path) as file:
+            known = json.load(file)
+        stale = [what for what in wanted if known["of"][what] != wanted[what]]
+        found = np.array(known["light"])
+        is_whole = found.shape == (2, len(known["poses"]), 4)
+    except (ValueError, KeyError, TypeError) as error:
+        sys.exit(f"error: {path}: no run as --judge writes it ({error!r}): remove it, or name another folder")
+    if stale or not is_whole:
+        sys.exit(f"error: {path}: a run of {'another ' + ', another '.join(stale) if stale else 'fewer poses'} than asked: "
+                 "remove it, or name another folder")
+    return found
+
+
+def judge_run(umov, folder, options, which, seed):
+    """The same; drawn, and kept where --judge says, unless it is there."""
+    wanted = fingerprint(folder, options.accuracy[1], seed)
+    path = options.judge and os.path.join(
+        options.judge, f"{which}-{options.surfaces}-{options.bands.replace(':', '')}-{options.poses}-{seed}.json")
+    if path and os.path.exists(path):
+        return read_run(path, wanted)
+    found = light(umov, folder, "paths", options.accuracy[1], seed)[0]
+    if path:
+        os.makedirs(options.judge, exist_ok=True)
+        with open(os.path.join(folder, "g.csv")) as file:
+            poses = [[float(x) for x in row] for row in csv.reader(list(file)[1:])]
+        with open(path + ".part", "w") as file:
+            json.dump({"of": wanted, "poses": poses, "light": found.tolist()}, file)
+        os.replace(path + ".part", path)
+    return found
+
+
 def random_poses(count):
     """Uniform attitudes, phase angles between 15 and 150 deg; the first of many are those of few."""
     rng = np.random.default_rng(6)
@@ -181,31 +229,40 @@ def random_poses(count):
     return rows
 
 
+JUDGE_SEEDS = range(1001, 1005)
+
+
 def rates(umov, folder, options, which):
     bands = options.bands.split(",")
     with open(os.path.join(folder, "s.toml")) as file:
         text = file.read()
     with open(os.path.join(folder, "s.toml"), "w") as file:
         file.write(text.replace('"nm:550"', ", ".join(f'"{band}"' for band in bands)).replace("accuracy_floor = 0\n", ""))
-    poses = random_poses(options.rate)
-    few = min(options.poses, options.rate)
+    poses = random_poses(2 * options.rate)
+    few = options.poses = min(options.poses, options.rate)
     write_geometry(folder, "g.csv", poses[:few])
-    judge = np.mean([light(umov, folder, "paths", options.accuracy[1], seed)[0][0] for seed in range(1001, 1005)], axis=0)
+    runs = np.array([judge_run(umov, folder, options, which, seed)[0] for seed in JUDGE_SEEDS])
+    judge = runs.mean(axis=0)
     kept = judge[:, 0] > 0.01 * np.median(judge[:, 0])
     poses = np.array(poses)
+    own = runs[:, kept, 0].std(axis=0, ddof=1) / 2 / judge[kept, 0]
+    print(f"{which}: {kept.sum()} poses; the judge's own error of I median {np.median(own):.1e}, 90 % "
+          f"{np.quantile(own, 0.9):.1e}", flush=True)
     for accuracy in options.at:
         begin = time.process_time()
         engine = engine_of(umov, folder, accuracy)
         found = engine.evaluate(poses[:few, :3], poses[:few, 3:])[kept, len(bands) // 2]
+        engine.evaluate(poses[:options.rate, :3], poses[:options.rate, 3:])
         ready = time.process_time() - begin
         begin = time.process_time()
-        engine.evaluate(poses[:, :3], poses[:, 3:])
+        engine.evaluate(poses[options.rate:, :3], poses[options.rate:, 3:])
         spent = time.process_time() - begin
+        ready -= spent * (few + options.rate) / options.rate
         i = np.abs(found[:, 0] / judge[kept, 0] - 1)
         q = np.abs(found[:, 1] / found[:, 0] - judge[kept, 1] / judge[kept, 0])
-        print(f"{which}, {len(bands)} band{'s' if len(bands) > 1 else ''}, accuracy {accuracy}: "
-              f"{ready - few * spent / len(poses):.1f} s beforehand, {len(poses) / spent:.0f} poses/s; error of I median "
-              f"{np.median(i):.1e}, 90 % {np.quantile(i, 0.9):.1e}, 95 % {np.quantile(i, 0.95):.1e}; of q "
+        print(f"{which}, {len(bands)} band{'s' if len(bands) > 1 else ''}, accuracy {accuracy}: {ready:.1f} s for what "
+              f"{options.rate} poses prepare, then {options.rate / spent:.0f} poses/s (load {os.getloadavg()[0]:.1f}); error of I "
+              f"median {np.median(i):.1e}, 90 % {np.quantile(i, 0.9):.1e}, 95 % {np.quantile(i, 0.95):.1e}; of q "
               f"{np.median(q):.1e}, {np.quantile(q, 0.9):.1e}", flush=True)
 
 
@@ -225,6 +282,7 @@ def main():
     parser.add_argument("--accuracy", type=float, nargs=2, default=[0.002, 0.001], help="of chains, and of the judge")
     parser.add_argument("--rate", type=int, default=0, metavar="N", help="time of N poses")
     parser.add_argument("--at", type=float, nargs="+", default=[0.02, 0.005], help="accuracies asked, for --rate")
+    parser.add_argument("--judge", metavar="FOLDER", help="where judges are kept, for --rate")
     parser.add_argument("--surfaces", type=int, default=5)
     parser.add_argument("--bands", default="nm:550", help="for --rate, separated by commas")
     parser.add_argument("body", nargs="*", help=", ".join(BODIES))
