@@ -7,13 +7,15 @@
 namespace umov::backend {
 
 inline constexpr std::size_t chain_products_max = 3;
-/// What a polynomial of a surface may miss, in parts of its largest value.
-inline constexpr double chain_fit_error = 5e-4;
+/// What a polynomial of a surface may miss, in parts of its largest value; and what it is wanted
+/// to, by the lowest degree that does.
+inline constexpr double chain_fit_error = 5e-4, chain_fit_wanted = 1e-4;
 
 /// One product of diffuse light: factor p(n.l) p(n.v), polynomials in t = 2 (1 + bend) c/(c + bend)
 /// - 1.
 struct ChainProduct {
   float factor = 0, bend = 1;
+  std::uint32_t degree = 0;
   bool is_as_reflected = false; ///< polarized as one reflection
   bool is_polarized = false;    ///< about the plane of emission, by `polarizing`
   float profile[kernel::polynomial_degree + 1]{};
@@ -26,6 +28,7 @@ struct ChainSurface {
   bool has_lobe = true;
   bool is_lobe_of_first = false; ///< that of the first band
   float bend = 1;                ///< of the reflection of a facet, over the cosine of incidence
+  std::uint32_t degree = 0;
   float a[kernel::polynomial_degree + 1]{}, b[kernel::polynomial_degree + 1]{};
   float z_real[kernel::polynomial_degree + 1]{}, z_imaginary[kernel::polynomial_degree + 1]{};
   std::uint32_t products = 0;
@@ -69,6 +72,9 @@ struct ChainData {
   std::size_t bands = 0;
   View<const float> transmitted; ///< of I, [block * lanes + lane]: for weigh_chains alone
 };
+
+/// Blocks that are looked through together for those that anything lights and sees.
+inline constexpr std::size_t chain_blocks_together = 64;
 
 /// A pose as chains see it.
 struct ChainPose {

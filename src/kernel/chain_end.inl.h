@@ -23,11 +23,14 @@ template <class R> struct Beam { R i, q, u, v; };
 
 /// Cosine and sine of twice the angle between two axes of a beam, of any lengths.
 template <class R> struct BeamTurn { R cosine, sine; };
+/// From an axis to one that has these coordinates along it and along beam x axis.
+template <class R> UMOV_KERNEL BeamTurn<R> turn_onto(R c, R d) {
+  const R c2 = c * c, d2 = d * d, per = R(1) / max(c2 + d2, R(1e-30));
+  return {(c2 - d2) * per, R(2) * c * d * per};
+}
 /// Light that travels along k, from axes s to axes t.
 template <class R> UMOV_KERNEL BeamTurn<R> beam_turn(Triple<R> s, Triple<R> t, Triple<R> k) {
-  const R c = inner(t, s), d = inner(t, outer(k, s));
-  const R per = R(1) / max(c * c + d * d, R(1e-30));
-  return {(c * c - d * d) * per, R(2) * c * d * per};
+  return turn_onto(inner(t, s), inner(t, outer(k, s)));
 }
 template <class R> UMOV_KERNEL Beam<R> turned(Beam<R> a, BeamTurn<R> by) {
   return {a.i, a.q * by.cosine + a.u * by.sine, a.u * by.cosine - a.q * by.sine, a.v};
@@ -35,22 +38,41 @@ template <class R> UMOV_KERNEL Beam<R> turned(Beam<R> a, BeamTurn<R> by) {
 
 /// One end of a chain and a direction outside: what does not depend on the band.
 template <class R> struct ChainEndAt {
-  R n_e, n_w, e_w; ///< cosines: outside, chain, between both
-  R half;          ///< of incidence on the facet
+  R n_e, n_w, e_w;  ///< cosines: outside, chain, between both
+  R half, per_half; ///< of incidence on the facet, and one over it
 };
 template <class R>
 UMOV_KERNEL ChainEndAt<R> chain_end_at(Triple<R> normal, Triple<R> along, Triple<R> outside) {
-  const R e_w = max(inner(along, outside), R(-1));
-  return {inner(normal, outside), inner(normal, along), e_w,
-          sqrt(max(R(0.5) + R(0.5) * e_w, R(1e-12)))};
+  const R e_w = max(inner(along, outside), R(-1)), half2 = max(R(0.5) + R(0.5) * e_w, R(1e-12)),
+          per_half = inverse_sqrt(half2);
+  return {inner(normal, outside), inner(normal, along), e_w, half2 * per_half, per_half};
+}
+
+/// sqrt(n^2 + alpha^2 (1 - n^2)): Smith's masking of GGX is 2 n/(n + this).
+template <class R> UMOV_KERNEL R ggx_root(R n_k, R alpha2) {
+  const R n2 = n_k * n_k;
+  return sqrt(n2 + alpha2 * (R(1) - n2));
+}
+/// D G2 / (4 n.w) of GGX, where masking is separable or Smith's, over one fraction: divisions and
+/// the masking of either direction by itself take as long as all the rest.
+template <class R>
+UMOV_KERNEL R ggx_chain_lobe(R sine2, R cosine2, R alpha, R n_e, R n_w, bool is_smith) {
+  const R alpha2 = alpha * alpha, f = sine2 + alpha2 * cosine2;
+  const R root_e = ggx_root(n_e, alpha2), root_w = ggx_root(n_w, alpha2);
+  const R masked =
+      is_smith ? R(2) * (n_w * root_e + n_e * root_w) : (n_e + root_e) * (n_w + root_w);
+  return alpha2 * n_e / (R(std::numbers::pi) * f * f * masked);
 }
 
 /// f (n.e) over the reflection of a facet: D G2 / (4 n.w).
 template <class R, class T>
 UMOV_KERNEL R chain_lobe(const LobeConstants<T> &lobe, const ChainEndAt<R> &at) {
   const R n_e = max(at.n_e, R(1e-6)), n_w = max(at.n_w, R(1e-6));
-  const R n_h = min((n_e + n_w) * R(0.5) / at.half, R(1));
+  const R n_h = min((n_e + n_w) * R(0.5) * at.per_half, R(1));
   const R apart = R(1) - n_h, sine2 = apart * (R(1) + n_h), cosine2 = n_h * n_h;
+  const bool is_smith = lobe.joint == Shadowing::Smith;
+  if (lobe.kind == LobeKind::Ggx && (is_smith || lobe.joint == Shadowing::Separable))
+    return ggx_chain_lobe(sine2, cosine2, R(lobe.shape), n_e, n_w, is_smith);
   const R density = lobe.kind == LobeKind::Ggx ? ggx(sine2, cosine2, R(lobe.shape))
                     : lobe.kind == LobeKind::Beckmann
                         ? beckmann(sine2, max(cosine2, R(1e-12)), R(lobe.shape))
@@ -63,8 +85,12 @@ UMOV_KERNEL R chain_lobe(const LobeConstants<T> &lobe, const ChainEndAt<R> &at) 
 template <class R> UMOV_KERNEL R bent(R cosine, float bend) {
   return R(2 * (1 + bend)) * cosine / (cosine + R(bend)) - R(1);
 }
-template <class R> UMOV_KERNEL R bent_polynomial(const float *c, R t) {
-  return polynomial(c, polynomial_degree, t);
+/// Of a degree that the fit of a surface chose, as few operations as the machine has for it.
+template <class R> UMOV_KERNEL R bent_polynomial(const float *c, std::uint32_t degree, R t) {
+  R sum = R(c[degree]);
+  for (std::uint32_t k = degree; k-- > 0;)
+    sum = product_and(sum, t, R(c[k]));
+  return sum;
 }
 
 /// The reflection of a facet.
@@ -72,56 +98,91 @@ template <class R> struct FacetReflection { R a, b, z_real, z_imaginary; };
 template <class R, class Surface>
 UMOV_KERNEL FacetReflection<R> facet_reflection(const Surface &surface, R cosine) {
   const R t = bent(cosine, surface.bend);
-  return {bent_polynomial(surface.a, t), bent_polynomial(surface.b, t),
-          bent_polynomial(surface.z_real, t), bent_polynomial(surface.z_imaginary, t)};
+  FacetReflection<R> out{R(surface.a[surface.degree]), R(surface.b[surface.degree]),
+                         R(surface.z_real[surface.degree]), R(surface.z_imaginary[surface.degree])};
+  for (std::uint32_t k = surface.degree; k-- > 0;) {
+    out.a = product_and(out.a, t, R(surface.a[k]));
+    out.b = product_and(out.b, t, R(surface.b[k]));
+    out.z_real = product_and(out.z_real, t, R(surface.z_real[k]));
+    out.z_imaginary = product_and(out.z_imaginary, t, R(surface.z_imaginary[k]));
+  }
+  return out;
 }
 
-/// Turns of axes at the Sun's end: from the plane of the reflection to the axis of the chain.
+/// The pose: directions, an axis across the observer's, and observer x axis.
+template <class R> struct PoseAxes { Triple<R> sun, observer, plane, beside; };
 template <class R>
-UMOV_KERNEL BeamTurn<R> turn_at_sun(Triple<R> along, Triple<R> axis, Triple<R> sun) {
-  return beam_turn(outer(along, sun), axis, along);
+UMOV_KERNEL PoseAxes<R> pose_axes(Triple<R> sun, Triple<R> observer, Triple<R> plane) {
+  return {sun, observer, plane, outer(observer, plane)};
+}
+
+/// Turn of axes at the Sun's end, from the plane of the reflection to the axis of the chain; and at
+/// the observer's, from that axis into the plane of the reflection. Of along x outside and axis, or
+/// the other way round, nothing but coordinates of the direction outside is left.
+template <class R>
+UMOV_KERNEL BeamTurn<R> turn_at_end(Triple<R> along, Triple<R> axis, Triple<R> outside) {
+  return turn_onto(inner(outside, outer(along, axis)), inner(outside, axis));
+}
+/// Out of the observer's end: from the plane through the observer and `from`, the chain or, for
+/// what is emitted, the normal, to the pose's plane.
+template <class R> UMOV_KERNEL BeamTurn<R> turn_to_pose(Triple<R> from, const PoseAxes<R> &pose) {
+  return turn_onto(inner(from, pose.beside), inner(from, pose.plane));
 }
 /// At the observer's end: into the plane of the reflection, out to the pose's plane, and from the
-/// plane of emission to that.
+/// plane of emission to that, if there is such light.
 template <class R> struct TurnsAtObserver { BeamTurn<R> in, out, emitted; };
 template <class R>
 UMOV_KERNEL TurnsAtObserver<R> turns_at_observer(Triple<R> normal, Triple<R> along, Triple<R> axis,
-                                                 Triple<R> observer, Triple<R> plane) {
-  const Triple<R> s = outer(observer, along), back{-along.x, -along.y, -along.z};
-  return {beam_turn(axis, s, back), beam_turn(s, plane, observer),
-          beam_turn(outer(normal, observer), plane, observer)};
+                                                 const PoseAxes<R> &pose, bool emits) {
+  TurnsAtObserver<R> out{turn_at_end(along, axis, pose.observer), turn_to_pose(along, pose), {}};
+  out.emitted = out.out;
+  if (emits)
+    out.emitted = turn_to_pose(normal, pose);
+  return out;
+}
+
+/// What sunlight is after its first reflection: without V.
+template <class R> struct LinearBeam { R i, q, u; };
+/// Of U = 0 before.
+template <class R> UMOV_KERNEL LinearBeam<R> turned(R i, R q, BeamTurn<R> by) {
+  return {i, q * by.cosine, -(q * by.sine)};
+}
+template <class R> UMOV_KERNEL Beam<R> turned(LinearBeam<R> a, BeamTurn<R> by) {
+  return {a.i, a.q * by.cosine + a.u * by.sine, a.u * by.cosine - a.q * by.sine, R(0)};
 }
 
 /// Sunlight that enters a chain, in its axis: all of it, and the lobe's part.
-template <class R> struct Entered { Beam<R> whole, lobe; };
+template <class R> struct Entered { LinearBeam<R> whole, lobe; };
 template <class R, class Surface>
 UMOV_KERNEL Entered<R> chain_entered(const Surface &surface, R lobe, const ChainEndAt<R> &at,
                                      BeamTurn<R> turn) {
   const R nothing = R(0);
-  Entered<R> out{{nothing, nothing, nothing, nothing}, {nothing, nothing, nothing, nothing}};
-  R as_reflected = nothing; // light polarized as one reflection, of I = 1 before it
+  Entered<R> out{{nothing, nothing, nothing}, {nothing, nothing, nothing}};
   FacetReflection<R> f{nothing, nothing, nothing, nothing};
   if (surface.has_lobe) {
     f = facet_reflection(surface, at.half);
-    out.lobe = turned(Beam<R>{lobe * f.a, lobe * f.b, nothing, nothing}, turn);
+    out.whole = out.lobe = turned(lobe * f.a, lobe * f.b, turn);
   }
+  if (surface.products == 0)
+    return out;
+  R as_reflected = nothing; // light polarized as one reflection, of I = 1 before it
   for (std::uint32_t k = 0; k < surface.products; ++k) {
     const auto &p = surface.product[k];
-    const R t = bent(at.n_w, p.bend), leaving = bent_polynomial(p.profile, t);
-    const R entering = R(p.factor) * at.n_e * bent_polynomial(p.profile, bent(at.n_e, p.bend));
+    const R t = bent(at.n_w, p.bend), leaving = bent_polynomial(p.profile, p.degree, t);
+    const R entering =
+        R(p.factor) * at.n_e * bent_polynomial(p.profile, p.degree, bent(at.n_e, p.bend));
     if (p.is_as_reflected && surface.has_lobe) {
       as_reflected = as_reflected + entering * leaving;
       continue;
     }
     out.whole.i = out.whole.i + entering * leaving;
     if (p.is_polarized)
-      out.whole.q = out.whole.q + entering * bent_polynomial(p.polarizing, t);
+      out.whole.q = out.whole.q + entering * bent_polynomial(p.polarizing, p.degree, t);
   }
-  const R scale = as_reflected / max(f.a, R(1e-12));
-  const Beam<R> more = turned(Beam<R>{as_reflected, scale * f.b, nothing, nothing}, turn);
-  out.whole.i = out.whole.i + more.i + out.lobe.i;
-  out.whole.q = out.whole.q + more.q + out.lobe.q;
-  out.whole.u = more.u + out.lobe.u;
+  const LinearBeam<R> more = turned(as_reflected, as_reflected / max(f.a, R(1e-12)) * f.b, turn);
+  out.whole.i = out.whole.i + more.i;
+  out.whole.q = out.whole.q + more.q;
+  out.whole.u = out.whole.u + more.u;
   return out;
 }
 
@@ -131,35 +192,42 @@ template <class R, class Surface>
 UMOV_KERNEL Beam<R> chain_left(const Surface &surface, R lobe, const ChainEndAt<R> &at,
                                const TurnsAtObserver<R> &turns, Beam<R> in, Beam<R> to_lobe) {
   const R nothing = R(0);
-  Beam<R> reflected{nothing, nothing, nothing, nothing}, emitted = reflected;
+  Beam<R> out{nothing, nothing, nothing, nothing}, emitted = out;
   R as_reflected = nothing;
   for (std::uint32_t k = 0; k < surface.products; ++k) {
     const auto &p = surface.product[k];
     const R t_in = bent(at.n_w, p.bend), t_out = bent(at.n_e, p.bend);
-    const R leaving = R(p.factor) * at.n_e * bent_polynomial(p.profile, t_out);
-    const R entering = bent_polynomial(p.profile, t_in);
+    const R leaving = R(p.factor) * at.n_e * bent_polynomial(p.profile, p.degree, t_out);
+    const R entering = bent_polynomial(p.profile, p.degree, t_in);
     if (p.is_as_reflected && surface.has_lobe) {
       as_reflected = as_reflected + leaving * entering;
       continue;
     }
     R inside = entering * in.i;
     if (p.is_polarized) {
-      inside = inside + bent_polynomial(p.polarizing, t_in) * in.q;
-      emitted.q = emitted.q + R(p.factor) * at.n_e * bent_polynomial(p.polarizing, t_out) * inside;
+      inside = inside + bent_polynomial(p.polarizing, p.degree, t_in) * in.q;
+      emitted.q = emitted.q +
+                  R(p.factor) * at.n_e * bent_polynomial(p.polarizing, p.degree, t_out) * inside;
     }
     emitted.i = emitted.i + leaving * inside;
   }
   if (surface.has_lobe) {
     const auto f = facet_reflection(surface, at.half);
-    const R scale = as_reflected / max(f.a, R(1e-12));
-    const auto mixed = [&](R whole, R part) { return scale * whole + lobe * part; };
-    const Beam<R> a = turned(in, turns.in), b = turned(to_lobe, turns.in);
-    const R i = mixed(a.i, b.i), q = mixed(a.q, b.q), u = mixed(a.u, b.u), v = mixed(a.v, b.v);
-    reflected = {f.a * i + f.b * q, f.b * i + f.a * q, f.z_real * u - f.z_imaginary * v,
-                 f.z_imaginary * u + f.z_real * v};
+    Beam<R> x{lobe * to_lobe.i, lobe * to_lobe.q, lobe * to_lobe.u, lobe * to_lobe.v};
+    if (surface.products > 0) {
+      const R scale = as_reflected / max(f.a, R(1e-12));
+      x = {x.i + scale * in.i, x.q + scale * in.q, x.u + scale * in.u, x.v + scale * in.v};
+    }
+    x = turned(x, turns.in);
+    out =
+        turned(Beam<R>{f.a * x.i + f.b * x.q, f.b * x.i + f.a * x.q,
+                       f.z_real * x.u - f.z_imaginary * x.v, f.z_imaginary * x.u + f.z_real * x.v},
+               turns.out);
   }
-  const Beam<R> x = turned(reflected, turns.out), y = turned(emitted, turns.emitted);
-  return {x.i + y.i, x.q + y.q, x.u + y.u, x.v};
+  if (surface.products == 0)
+    return out;
+  const LinearBeam<R> y = turned(emitted.i, emitted.q, turns.emitted);
+  return {out.i + y.i, out.q + y.q, out.u + y.u, out.v};
 }
 
 /// An end as it is drawn.
@@ -171,27 +239,42 @@ template <class R> struct ChainAt {
   BeamTurn<R> at_sun, straight;
   TurnsAtObserver<R> at_observer;
 };
+/// `emits`: the seen end has light of other kinds than its lobe's.
 template <class R>
 UMOV_KERNEL ChainAt<R> chain_at(const ChainEndAxes<R> &seen, const ChainEndAxes<R> &lit,
                                 const ChainEndAt<R> &seen_at, const ChainEndAt<R> &lit_at,
-                                Triple<R> sun, Triple<R> observer, Triple<R> plane) {
-  return {seen_at, lit_at, turn_at_sun(lit.along, lit.axis, sun),
-          beam_turn(lit.axis, seen.axis, lit.along),
-          turns_at_observer(seen.normal, seen.along, seen.axis, observer, plane)};
+                                const PoseAxes<R> &pose, bool is_straight, bool emits) {
+  ChainAt<R> out{seen_at,
+                 lit_at,
+                 turn_at_end(lit.along, lit.axis, pose.sun),
+                 {},
+                 turns_at_observer(seen.normal, seen.along, seen.axis, pose, emits)};
+  out.straight = out.at_sun;
+  if (is_straight)
+    out.straight = beam_turn(lit.axis, seen.axis, lit.along);
+  return out;
 }
 
 /// Light carried through what lies between, by the elements `entry(row, column)` of its matrix;
 /// from behind by the transposed one with the signs of U, by reciprocity.
 template <class R, class Entry>
-UMOV_KERNEL Beam<R> chain_between(const Entry &entry, bool is_reversed, Beam<R> light) {
+UMOV_KERNEL Beam<R> chain_between(const Entry &entry, bool is_reversed, LinearBeam<R> light) {
   const R u = is_reversed ? -light.u : light.u;
-  R out[4] = {light.i, light.q, u, light.v};
+  R out[4] = {light.i, light.q, u, u};
   for (std::uint32_t r = 0; r < 4; ++r)
-    out[r] = is_reversed ? entry(0, r) * light.i + entry(1, r) * light.q + entry(2, r) * u +
-                               entry(3, r) * light.v
-                         : entry(r, 0) * light.i + entry(r, 1) * light.q + entry(r, 2) * u +
-                               entry(r, 3) * light.v;
+    out[r] = is_reversed ? entry(0, r) * light.i + entry(1, r) * light.q + entry(2, r) * u
+                         : entry(r, 0) * light.i + entry(r, 1) * light.q + entry(r, 2) * u;
   return {out[0], out[1], is_reversed ? -out[2] : out[2], out[3]};
+}
+
+/// The same of light that has V, too.
+template <class R, class Entry>
+UMOV_KERNEL Beam<R> chain_between(const Entry &entry, bool is_reversed, Beam<R> light) {
+  const Beam<R> x = chain_between(entry, is_reversed, LinearBeam<R>{light.i, light.q, light.u});
+  const auto more = [&](std::uint32_t r) {
+    return (is_reversed ? entry(3, r) : entry(r, 3)) * light.v;
+  };
+  return {x.i + more(0), x.q + more(1), is_reversed ? x.u - more(2) : x.u + more(2), x.v + more(3)};
 }
 
 /// What a chain carries from the Sun to the observer in one band; `pass` takes a beam from the lit
@@ -203,8 +286,8 @@ UMOV_KERNEL Beam<R> chain_carried(const Surface &seen, const Surface &lit, R lob
   const Beam<R> in = pass(entered.whole);
   Beam<R> to_lobe = in;
   if (is_without_lobes)
-    to_lobe = pass(Beam<R>{entered.whole.i - entered.lobe.i, entered.whole.q - entered.lobe.q,
-                           entered.whole.u - entered.lobe.u, entered.whole.v});
+    to_lobe = pass(LinearBeam<R>{entered.whole.i - entered.lobe.i, entered.whole.q - entered.lobe.q,
+                                 entered.whole.u - entered.lobe.u});
   return chain_left(seen, lobe_seen, at.seen, at.at_observer, in, to_lobe);
 }
 

@@ -45,6 +45,9 @@ UMOV_KERNEL float log2_of_one_minus(float y) {
   return log1p(-min(y, 1 - 6e-8F)) * 1.4426950408889634F;
 }
 
+/// a b + c, which lanes round once where the machine does.
+template <class R> UMOV_KERNEL R product_and(R a, R b, R c) { return a * b + c; }
+
 /// Polynomial c[0] + c[1] t + ... of degree n.
 template <class R, class T> UMOV_KERNEL R polynomial(const T *c, std::size_t n, R t) {
   R sum = R(c[n]);

@@ -19,12 +19,14 @@ HWY_INLINE EndStrength strength_of(const backend::ChainSurface &surface, Lanes l
   const Lanes nothing(0.0f), least(backend::chain_fit_error);
   EndStrength out{nothing, nothing};
   if (surface.has_lobe)
-    out.lobe = lobe * max(bent_polynomial(surface.a, bent(at.half, surface.bend)), least);
+    out.lobe =
+        lobe * max(bent_polynomial(surface.a, surface.degree, bent(at.half, surface.bend)), least);
   for (std::uint32_t k = 0; k < surface.products; ++k) {
     const auto &p = surface.product[k];
-    out.rest = out.rest + Lanes(p.factor) * at.n_e *
-                              max(bent_polynomial(p.profile, bent(at.n_e, p.bend)), least) *
-                              max(bent_polynomial(p.profile, bent(at.n_w, p.bend)), least);
+    out.rest =
+        out.rest + Lanes(p.factor) * at.n_e *
+                       max(bent_polynomial(p.profile, p.degree, bent(at.n_e, p.bend)), least) *
+                       max(bent_polynomial(p.profile, p.degree, bent(at.n_w, p.bend)), least);
   }
   out.rest = max(out.rest, nothing);
   return out;

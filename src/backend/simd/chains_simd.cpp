@@ -6,6 +6,7 @@
 // foreach_target comes first: it includes this file once for each instruction set.
 #include "backend/simd/chain_axes.inl.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "kernel/begin.h"
@@ -13,7 +14,6 @@
 /// 16 bits of each of the three directions around one.
 struct ThreeWords {
   std::uint32_t word[3];
-  [[nodiscard]] HWY_INLINE std::uint32_t any() const { return word[0] | word[1] | word[2]; }
   /// Interpolated between the three, for the lanes from s on.
   [[nodiscard]] HWY_INLINE Lanes share(const backend::GridLook &look, std::size_t s) const {
     const FloatTag d;
@@ -41,34 +41,54 @@ public:
       : data_(data), run_(run), band_(band),
         bands_(data.bands - band < backend::chain_bands_max ? data.bands - band
                                                             : backend::chain_bands_max),
-        pose_(pose), out_(out), sun_(everywhere(pose.sun)), observer_(everywhere(pose.observer)),
-        plane_(everywhere(pose.plane)) {}
+        pose_(pose), out_(out),
+        axes_(pose_axes(everywhere(pose.sun), everywhere(pose.observer), everywhere(pose.plane))),
+        emits_p_(emits(run.kind_p)), emits_q_(emits(run.kind_q)) {}
 
   HWY_INLINE void add(std::size_t begin, std::size_t count) {
     std::memset(light_, 0, bands_ * sizeof(light_[0]));
     std::memset(squares_, 0, sizeof(squares_));
-    for (std::size_t k = begin; k < begin + count; ++k) {
-      const std::size_t block = run_.first + k;
-      const ThreeWords lit_p = words(data_.masks.p, pose_.at_sun, block),
-                       lit_q = words(data_.masks.q, pose_.at_sun, block),
-                       seen_p = words(data_.masks.p, pose_.at_observer, block),
-                       seen_q = words(data_.masks.q, pose_.at_observer, block);
-      const bool is_open = (lit_q.any() & seen_p.any()) != 0,
-                 is_open_behind = (lit_p.any() & seen_q.any()) != 0;
-      if (!is_open && !is_open_behind)
-        continue;
-      is_noted_ = false;
-      if (is_open)
-        add_block<false>(k, block, seen_p, lit_q);
-      if (is_open_behind)
-        add_block<true>(k, block, seen_q, lit_p);
-      if (is_noted_)
-        backend::keep_note(note_, out_);
-    }
+    for (std::size_t k = begin; k < begin + count; k += backend::chain_blocks_together)
+      add_some(k, std::min(backend::chain_blocks_together, begin + count - k));
     done();
   }
 
 private:
+  using Bits = std::uint16_t[backend::chain_blocks_together];
+  /// Lanes of each block for which some direction around one is free.
+  HWY_INLINE void gather(const backend::View<const std::uint16_t> &from,
+                         const backend::GridLook &look, std::size_t first, std::size_t count,
+                         Bits &out) const {
+    const std::uint16_t *rows[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      rows[k] = &from[look.direction[k] * data_.masks.blocks + first];
+    for (std::size_t k = 0; k < count; ++k)
+      out[k] = static_cast<std::uint16_t>(rows[0][k] | rows[1][k] | rows[2][k]);
+  }
+
+  HWY_INLINE void add_some(std::size_t begin, std::size_t count) {
+    Bits lit_p_any, lit_q_any, seen_p_any, seen_q_any;
+    gather(data_.masks.p, pose_.at_sun, run_.first + begin, count, lit_p_any);
+    gather(data_.masks.q, pose_.at_sun, run_.first + begin, count, lit_q_any);
+    gather(data_.masks.p, pose_.at_observer, run_.first + begin, count, seen_p_any);
+    gather(data_.masks.q, pose_.at_observer, run_.first + begin, count, seen_q_any);
+    for (std::size_t n = 0; n < count; ++n) {
+      const bool is_open = (lit_q_any[n] & seen_p_any[n]) != 0,
+                 is_open_behind = (lit_p_any[n] & seen_q_any[n]) != 0;
+      if (!is_open && !is_open_behind)
+        continue;
+      const std::size_t k = begin + n, block = run_.first + k;
+      is_noted_ = false;
+      if (is_open)
+        add_block<false>(k, block, words(data_.masks.p, pose_.at_observer, block),
+                         words(data_.masks.q, pose_.at_sun, block));
+      if (is_open_behind)
+        add_block<true>(k, block, words(data_.masks.q, pose_.at_observer, block),
+                        words(data_.masks.p, pose_.at_sun, block));
+      if (is_noted_)
+        backend::keep_note(note_, out_);
+    }
+  }
   HWY_INLINE ThreeWords words(const backend::View<const std::uint16_t> &from,
                               const backend::GridLook &look, std::size_t block) const {
     ThreeWords out;
@@ -81,6 +101,14 @@ private:
     return data_.surfaces[kind * data_.bands + band_ + b];
   }
 
+  /// In some band there is other light than a lobe's.
+  [[nodiscard]] HWY_INLINE bool emits(std::uint32_t kind) const {
+    for (std::size_t b = 0; b < bands_; ++b)
+      if (surface(kind, b).products > 0)
+        return true;
+    return false;
+  }
+
   /// With the observer at one end: at q if the chains are taken from behind.
   template <bool is_reversed>
   HWY_INLINE void add_block(std::size_t k, std::size_t block, const ThreeWords &seen,
@@ -90,8 +118,8 @@ private:
     for (std::size_t s = 0; s < backend::lanes; s += hn::Lanes(d)) {
       const EndAxes a = load_end(is_reversed ? at.q : at.p, s),
                     b = load_end(is_reversed ? at.p : at.q, s);
-      const auto end_a = chain_end_at(a.normal, a.along, observer_),
-                 end_b = chain_end_at(b.normal, b.along, sun_);
+      const auto end_a = chain_end_at(a.normal, a.along, axes_.observer),
+                 end_b = chain_end_at(b.normal, b.along, axes_.sun);
       const Lanes whole(hn::Load(d, (is_reversed ? at.from_q : at.from_p) + s));
       const Lanes share = seen.share(pose_.at_observer, s) * lit.share(pose_.at_sun, s);
       Lanes weight = whole * share;
@@ -102,8 +130,10 @@ private:
       weight = select(counts, weight, Lanes(0.0f));
       // Of something that is free with chance `share`; weights of three that agree add up to 1.
       const Lanes doubt = whole * sqrt(max(share * (Lanes(0.99999f) - share), Lanes(0.0f)));
-      add_bands<is_reversed>(k, s, chain_at(a, b, end_a, end_b, sun_, observer_, plane_), weight,
-                             select(counts, doubt, Lanes(0.0f)));
+      add_bands<is_reversed>(
+          k, s,
+          chain_at(a, b, end_a, end_b, axes_, run_.is_straight, is_reversed ? emits_q_ : emits_p_),
+          weight, select(counts, doubt, Lanes(0.0f)));
     }
   }
 
@@ -119,7 +149,7 @@ private:
         lobe_a = chain_lobe(of_a.lobe, at.seen);
       if (of_b.has_lobe && (band == 0 || !of_b.is_lobe_of_first))
         lobe_b = chain_lobe(of_b.lobe, at.lit);
-      const auto pass = [&](const Beam<Lanes> &light) HWY_ATTR {
+      const auto pass = [&](const LinearBeam<Lanes> &light) HWY_ATTR {
         return run_.is_straight ? turned(light, at.straight)
                                 : between<is_reversed>(k, band, s, light);
       };
@@ -132,7 +162,7 @@ private:
 
   template <bool is_reversed>
   HWY_INLINE Beam<Lanes> between(std::size_t k, std::size_t band, std::size_t s,
-                                 const Beam<Lanes> &light) const {
+                                 const LinearBeam<Lanes> &light) const {
     const FloatTag d;
     const backend::ChainMatrix &m = data_.matrices[run_.matrix + k * data_.bands + band_ + band];
     const auto entry = [&](std::size_t row, std::size_t column)
@@ -182,16 +212,17 @@ private:
   std::size_t band_, bands_;
   const backend::ChainPose &pose_;
   backend::ChainSums &out_;
-  Axes sun_, observer_, plane_;
+  PoseAxes<Lanes> axes_;
+  bool emits_p_, emits_q_;
   HWY_ALIGN float light_[backend::chain_bands_max][4][backend::lanes];
   HWY_ALIGN float squares_[backend::lanes];
   backend::ChainNote note_;
   bool is_any_ = false, is_noted_ = false;
 };
 
-void sum_chains_here(const backend::ChainData &data, const backend::ChainRun &run,
-                     std::size_t begin, std::size_t blocks, std::size_t band,
-                     const backend::ChainPose &pose, backend::ChainSums &out) {
+HWY_FLATTEN void sum_chains_here(const backend::ChainData &data, const backend::ChainRun &run,
+                                 std::size_t begin, std::size_t blocks, std::size_t band,
+                                 const backend::ChainPose &pose, backend::ChainSums &out) {
   ChainLoop(data, run, band, pose, out).add(begin, blocks);
 }
 

@@ -162,11 +162,13 @@ template <class R, class T, class Put> UMOV_KERNEL void probe_facet(R x, const P
 struct ProbeChainSurface {
   struct Product {
     float bend = 0.5f, factor = 0.25f;
+    std::uint32_t degree = polynomial_degree;
     bool is_as_reflected = false, is_polarized = false;
     float profile[polynomial_degree + 1] = {0.75f, 0.125f, -0.0625f};
     float polarizing[polynomial_degree + 1] = {0.125f, 0.25f};
   };
   float bend = 0.25f;
+  std::uint32_t degree = polynomial_degree;
   float a[polynomial_degree + 1] = {0.75f, -0.125f}, b[polynomial_degree + 1] = {0.125f, 0.25f},
                               z_real[polynomial_degree + 1] = {-0.5f},
                               z_imaginary[polynomial_degree + 1] = {0.25f, 0.125f};
@@ -186,7 +188,9 @@ template <class R> struct ProbeBetween {
   UMOV_KERNEL R operator()(std::uint32_t row, std::uint32_t column) const {
     return x * R(0.125f * static_cast<float>(1 + row)) - R(0.25f * static_cast<float>(column));
   }
-  UMOV_KERNEL Beam<R> operator()(Beam<R> light) const { return chain_between(*this, true, light); }
+  UMOV_KERNEL Beam<R> operator()(LinearBeam<R> light) const {
+    return chain_between(*this, true, light);
+  }
 };
 /// Sun and observer on both sides of the normal, a chain that leans by x from it.
 template <class R, class T, class Put> UMOV_KERNEL void probe_chain_end(R x, const Put &put) {
@@ -207,15 +211,17 @@ template <class R, class T, class Put> UMOV_KERNEL void probe_chain_end(R x, con
     lobe.peak = T(6.5);
     const auto in = chain_end_at(normal, along, sun), out = chain_end_at(normal, along, seen);
     const auto entered =
-        chain_entered(surface, chain_lobe(lobe, in), in, turn_at_sun(along, axis, sun));
-    probe_beam(entered.whole, put);
-    probe_beam(entered.lobe, put);
+        chain_entered(surface, chain_lobe(lobe, in), in, turn_at_end(along, axis, sun));
+    const BeamTurn<R> none{R(1), R(0)};
+    probe_beam(turned(entered.whole, none), put);
+    probe_beam(turned(entered.lobe, none), put);
+    const PoseAxes<R> pose = pose_axes(sun, seen, plane);
     probe_beam(chain_left(surface, chain_lobe(lobe, out), out,
-                          turns_at_observer(normal, along, axis, seen, plane), entered.whole,
-                          entered.lobe),
+                          turns_at_observer(normal, along, axis, pose, true),
+                          turned(entered.whole, none), turned(entered.lobe, none)),
                put);
     const ChainEndAxes<R> end{normal, along, axis};
-    const auto whole = chain_at(end, end, out, in, sun, seen, plane);
+    const auto whole = chain_at(end, end, out, in, pose, true, true);
     probe_beam(turned(entered.whole, whole.straight), put);
     probe_beam(chain_carried(surface, surface, chain_lobe(lobe, out), chain_lobe(lobe, in), whole,
                              true, ProbeBetween<R>{x}),

@@ -31,11 +31,19 @@ private:
   /// As often as its grids say, with the doubt in that.
   void add_guessed(const OneChain &chain, const backend::ChainPose &pose, backend::ChainSums &sums,
                    backend::ChainNote &note) const;
+  /// A chain of a sample, and how likely it was to be in it.
+  struct Chosen {
+    std::size_t block, lane;
+    double chance;
+  };
   /// A sample of the chains that carried, each with a chance of `per` times its number `of` a note,
-  /// whose largest is `most`. Calls chosen(run, block, lane, chance).
+  /// whose largest is `most`. Calls settle(chosen).
   template <class F>
   void sample(const backend::ChainSums &sums, float (backend::ChainNote::*of)[backend::lanes],
-              float backend::ChainNote::*most, double per, F &&chosen) const;
+              float backend::ChainNote::*most, double per, const backend::ChainPose &pose,
+              F &&settle) const;
+  /// What settling a chain reads lies all over the memory: asks for it beforehand.
+  void fetch(const Chosen &one, const backend::ChainPose &pose) const;
   /// Above which chance the chains of a block are in the sample.
   using Thresholds = std::array<float, replicates>;
   [[nodiscard]] Thresholds thresholds(std::size_t block) const;

@@ -16,6 +16,8 @@ constexpr double least_sample = 64, largest_part = 1.0 / 64;
 constexpr double asked = 256;
 /// A guess closer than this to sure is not in doubt (ChainNote::doubt has the same).
 constexpr double sure = 0.99999;
+/// As many chains of a sample are on their way from memory while one is settled.
+constexpr std::size_t ahead = 12;
 /// Steps of Kronecker's sequence: chains that stand together are alike, and their thresholds far
 /// apart.
 constexpr double golden = 0.6180339887498949;
@@ -44,11 +46,26 @@ ChainLevel::Thresholds ChainLevel::thresholds(std::size_t block) const {
   return out;
 }
 
+void ChainLevel::fetch(const Chosen &one, const backend::ChainPose &pose) const {
+  for (const backend::GridLook *look : {&pose.at_sun, &pose.at_observer})
+    for (const std::uint32_t direction : look->direction)
+      for (const auto *free : {&drawn_.free_p, &drawn_.free_q})
+        __builtin_prefetch(&(*free)[direction * blocks() + one.block]);
+  const std::size_t at = one.block * replicates + one.lane;
+  __builtin_prefetch(&drawn_.point_p[at]);
+  __builtin_prefetch(&drawn_.point_q[at]);
+  for (const backend::ChainEnds *end : {&drawn_.block[one.block].p, &drawn_.block[one.block].q})
+    for (const auto &axis : end->normal)
+      __builtin_prefetch(&axis[one.lane]);
+}
+
 template <class F>
 void ChainLevel::sample(const backend::ChainSums &sums,
                         float (backend::ChainNote::*of)[backend::lanes],
-                        float backend::ChainNote::*most, double per, F &&chosen) const {
+                        float backend::ChainNote::*most, double per, const backend::ChainPose &pose,
+                        F &&settle) const {
   const auto scale = static_cast<float>(per);
+  std::vector<Chosen> chosen;
   for (std::size_t n = 0; n < sums.noted; ++n) {
     const backend::ChainNote &note = sums.notes[n];
     if (!(note.*most > 0) || scale * (note.*most) <= least_threshold_[note.block])
@@ -58,8 +75,14 @@ void ChainLevel::sample(const backend::ChainSums &sums,
       const float part = (note.*of)[lane]; // where all are faint, the scale may be infinite
       const float chance = part > 0 ? std::min(1.0f, scale * part) : 0.0f;
       if (chance > threshold[lane])
-        chosen(run_at(note.block), note.block, lane, static_cast<double>(chance));
+        chosen.push_back({note.block, lane, static_cast<double>(chance)});
     }
+  }
+  for (std::size_t k = 0; k < chosen.size() + ahead; ++k) {
+    if (k < chosen.size())
+      fetch(chosen[k], pose);
+    if (k >= ahead)
+      settle(chosen[k - ahead]);
   }
 }
 
@@ -73,13 +96,12 @@ void ChainLevel::mend(const backend::ChainPose &pose, double error,
   const double most = std::max(least_sample, largest_part * static_cast<double>(chains())),
                wanted = std::pow(doubt / (replicates * error), 2);
   sample(sums, &backend::ChainNote::doubt, &backend::ChainNote::most_doubt,
-         std::clamp(wanted, least_sample, most) / doubt,
-         [&](const backend::ChainRun &run, std::size_t block, std::size_t lane, double chance) {
+         std::clamp(wanted, least_sample, most) / doubt, pose, [&](const Chosen &of) {
            for (const bool is_reversed : {false, true}) {
-             const OneChain one{run, block, lane, is_reversed};
+             const OneChain one{run_at(of.block), of.block, of.lane, is_reversed};
              const double guess = guessed(one, pose);
              if (guess > 0 && guess < sure)
-               add_one(one, ((is_free(one, pose) ? 1 : 0) - guess) / chance, pose, sums);
+               add_one(one, ((is_free(one, pose) ? 1 : 0) - guess) / of.chance, pose, sums);
            }
          });
 }
@@ -91,12 +113,11 @@ double ChainLevel::mistaken(const backend::ChainPose &pose, const backend::Chain
   backend::ChainSums wrong;
   wrong.bands = light;
   sample(sums, &backend::ChainNote::carried, &backend::ChainNote::most_carried,
-         asked / sums.carried,
-         [&](const backend::ChainRun &run, std::size_t block, std::size_t lane, double chance) {
+         asked / sums.carried, pose, [&](const Chosen &of) {
            for (const bool is_reversed : {false, true}) {
-             const OneChain one{run, block, lane, is_reversed};
+             const OneChain one{run_at(of.block), of.block, of.lane, is_reversed};
              if (guessed(one, pose) >= sure && !is_free(one, pose))
-               add_one(one, 1 / chance, pose, wrong);
+               add_one(one, 1 / of.chance, pose, wrong);
            }
          });
   return std::accumulate(std::begin(light[0].i), std::end(light[0].i), 0.0);

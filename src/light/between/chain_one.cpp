@@ -46,8 +46,8 @@ struct BetweenEnds {
   const backend::ChainMatrix *of_bands; ///< null: nothing
   std::size_t lane;
   bool is_reversed; ///< the observer at q
-  template <class R>
-  [[nodiscard]] kernel::Beam<R> carried(std::size_t band, const kernel::Beam<R> &light) const {
+  template <class R, template <class> class Light>
+  [[nodiscard]] kernel::Beam<R> carried(std::size_t band, const Light<R> &light) const {
     const auto entry = [&](std::uint32_t row, std::uint32_t column) {
       return static_cast<R>(of_bands[band].m[4 * row + column][lane]);
     };
@@ -66,7 +66,7 @@ struct GeneralChain {
     const Light x = turned(light, from, lit.axis, lit.along);
     if (between.of_bands == nullptr)
       return turned(turned(x, lit.axis, seen.axis, lit.along), seen.axis, to, -seen.along);
-    const auto out = between.carried<double>(band, {x.i, x.q, x.u, x.v});
+    const auto out = between.carried(band, kernel::Beam<double>{x.i, x.q, x.u, x.v});
     return turned(Light{out.i, out.q, out.u, out.v}, seen.axis, to, -seen.along);
   }
 
@@ -109,15 +109,16 @@ struct FastChain {
                b = axes_of(with.is_reversed ? block.p : block.q, with.lane);
     const Axes sun = axes_of(pose.sun), observer = axes_of(pose.observer);
     at = kernel::chain_at(a, b, kernel::chain_end_at(a.normal, a.along, observer),
-                          kernel::chain_end_at(b.normal, b.along, sun), sun, observer,
-                          axes_of(pose.plane));
+                          kernel::chain_end_at(b.normal, b.along, sun),
+                          kernel::pose_axes(sun, observer, axes_of(pose.plane)),
+                          with.of_bands == nullptr, true);
   }
   [[nodiscard]] Light carried(std::size_t band, bool is_without_lobes) const {
     const backend::ChainSurface &of_seen = seen[band], &of_lit = lit[band];
     const auto lobe = [](const backend::ChainSurface &of, const kernel::ChainEndAt<float> &end) {
       return of.has_lobe ? kernel::chain_lobe(of.lobe, end) : 0.0f;
     };
-    const auto pass = [&](const kernel::Beam<float> &light) {
+    const auto pass = [&](const kernel::LinearBeam<float> &light) {
       return between.of_bands == nullptr ? kernel::turned(light, at.straight)
                                          : between.carried(band, light);
     };

@@ -27,46 +27,79 @@ constexpr double least_width = 0.05;
 constexpr double wide = 0.1;
 constexpr std::size_t cosines = 32;
 
-/// Values at Chebyshev's nodes of t = 2 (1 + bend) c/(c + bend) - 1 as powers of t; false if it
-/// does not follow.
-template <class Function> bool fit(const Function &f, double bend, float *out, double scale) {
-  NodeValues value{};
-  const auto cosine = [&](double t) {
-    const double x = (t + 1) / (2 * (1 + bend));
-    return std::min(1.0, bend * x / (1 - x));
-  };
-  for (std::size_t i = 0; i < chebyshev_nodes; ++i)
-    value[i] = f(cosine(chebyshev_node(i)));
-  const Coefficients c = fit_polynomial(value, kernel::polynomial_degree);
-  double worst = 0;
-  for (int k = 0; k <= 200; ++k) {
-    const double t = -1 + 0.01 * k;
-    double sum = 0;
-    for (std::size_t n = c.size(); n-- > 0;)
-      sum = sum * t + c[n];
-    worst = std::max(worst, std::abs(sum - f(cosine(t))));
+/// Cosine at t = 2 (1 + bend) c/(c + bend) - 1.
+double cosine_at(double bend, double t) {
+  const double x = (t + 1) / (2 * (1 + bend));
+  return std::min(1.0, bend * x / (1 - x));
+}
+
+/// Functions of a cosine, `n` of them, at Chebyshev's nodes of t and at places between them.
+template <std::size_t n> struct Sampled {
+  using Values = std::array<double, n>;
+  static constexpr std::size_t places = 201;
+  static double place(std::size_t k) { return -1 + 0.01 * static_cast<double>(k); }
+
+  double bend;
+  std::array<NodeValues, n> at_node{};
+  std::array<Values, places> between{};
+
+  template <class Function> Sampled(double of_bend, const Function &f) : bend(of_bend) {
+    for (std::size_t i = 0; i < chebyshev_nodes; ++i) {
+      const Values values = f(cosine_at(bend, chebyshev_node(i)));
+      for (std::size_t part = 0; part < n; ++part)
+        at_node[part][i] = values[part];
+    }
+    for (std::size_t k = 0; k < places; ++k)
+      between[k] = f(cosine_at(bend, place(k)));
   }
-  std::transform(c.begin(), c.end(), out, [](double x) { return static_cast<float>(x); });
-  return worst <= backend::chain_fit_error * scale;
+  /// One of them as powers of t; returns by what it misses at worst.
+  double fit(std::size_t part, std::size_t degree, float *out) const {
+    const Coefficients c = fit_polynomial(at_node[part], degree);
+    std::transform(c.begin(), c.end(), out, [](double x) { return static_cast<float>(x); });
+    double worst = 0;
+    for (std::size_t k = 0; k < places; ++k) {
+      double sum = 0;
+      for (std::size_t power = degree + 1; power-- > 0;)
+        sum = sum * place(k) + c[power];
+      worst = std::max(worst, std::abs(sum - between[k][part]));
+    }
+    return worst;
+  }
+};
+
+/// All of `n` functions by polynomials of one bend and degree: the lowest that is as good as
+/// wanted, or the best that is good enough; false if there is none. `scale`: what errors are parts
+/// of.
+template <std::size_t n, class Function>
+bool fit_all(const Function &f, double scale, const std::array<float *, n> &out, float &bend,
+             std::uint32_t &degree) {
+  std::vector<Sampled<n>> all;
+  for (const double one : {1e3, 1.0, 0.3, 0.1})
+    all.emplace_back(one, f);
+  const auto is_fit = [&](const Sampled<n> &sampled, std::size_t of_degree, double error) {
+    for (std::size_t part = 0; part < n; ++part)
+      if (!(sampled.fit(part, of_degree, out[part]) <= error * scale))
+        return false;
+    bend = static_cast<float>(sampled.bend);
+    degree = static_cast<std::uint32_t>(of_degree);
+    return true;
+  };
+  for (std::size_t k = 2; k <= kernel::polynomial_degree; k += 2)
+    for (const Sampled<n> &sampled : all)
+      if (is_fit(sampled, k, backend::chain_fit_wanted))
+        return true;
+  return std::ranges::any_of(all, [&](const Sampled<n> &sampled) {
+    return is_fit(sampled, kernel::polynomial_degree, backend::chain_fit_error);
+  });
 }
 
 bool fit_reflection(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
-  const double scale = surface.reflection(band, 0).a;
-  for (const double bend : {1e3, 1.0, 0.3, 0.1}) {
-    out.bend = static_cast<float>(bend);
-    bool is_good = true;
-    const auto each = [&](float *to, auto part) {
-      is_good = is_good &&
-                fit([&](double c) { return part(surface.reflection(band, c)); }, bend, to, scale);
-    };
-    each(out.a, [](const MuellerEntries &m) { return m.a; });
-    each(out.b, [](const MuellerEntries &m) { return m.b; });
-    each(out.z_real, [](const MuellerEntries &m) { return m.z.real(); });
-    each(out.z_imaginary, [](const MuellerEntries &m) { return m.z.imag(); });
-    if (is_good)
-      return true;
-  }
-  return false;
+  const auto reflection = [&](double cosine) {
+    const MuellerEntries m = surface.reflection(band, cosine);
+    return std::array{m.a, m.b, m.z.real(), m.z.imag()};
+  };
+  return fit_all<4>(reflection, surface.reflection(band, 0).a,
+                    {out.a, out.b, out.z_real, out.z_imaginary}, out.bend, out.degree);
 }
 
 bool fit_products(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
@@ -80,16 +113,10 @@ bool fit_products(const Surface &surface, std::size_t band, backend::ChainSurfac
     to.factor = static_cast<float>(from.factor);
     to.is_as_reflected = from.is_single_bounce;
     to.is_polarized = static_cast<bool>(from.polarizing);
-    bool is_good = false;
-    for (const double bend : {1e3, 1.0, 0.3, 0.1}) {
-      to.bend = static_cast<float>(bend);
-      is_good = fit(from.profile, bend, to.profile, 1) &&
-                (!to.is_polarized || fit([&](double c) { return from.polarizing(c) * (1 - c * c); },
-                                         bend, to.polarizing, 1));
-      if (is_good)
-        break;
-    }
-    if (!is_good)
+    const auto profiles = [&](double c) {
+      return std::array{from.profile(c), to.is_polarized ? from.polarizing(c) * (1 - c * c) : 0};
+    };
+    if (!fit_all<2>(profiles, 1, {to.profile, to.polarizing}, to.bend, to.degree))
       return false;
   }
   return true;
