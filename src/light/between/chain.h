@@ -4,15 +4,18 @@
 #include <cstdint>
 #include <umov/core/quantity.h>
 #include <umov/core/vec3.h>
+#include <umov/shape/occluder.h>
 #include <vector>
 
 namespace umov {
 
-/// One end of a chain: where light comes in from the Sun, or leaves to the observer.
+/// One end of a chain: where light comes in from the Sun, or leaves to the observer. A million of
+/// them are drawn at a time, and asked for no more digits than these.
 struct ChainEnd {
-  Vec3<Body> point{}, face{}, normal{};
-  Vec3<Body> along{};                   ///< unit, to the next surface of the chain
-  Vec3<Body> axis{};                    ///< of the beam at this end: normal x along
+  Occluder::Point point{};
+  float face[3]{}, normal[3]{};
+  float along[3]{};                     ///< unit, to the next surface of the chain
+  float axis[3]{};                      ///< of the beam at this end: normal x along
   std::uint32_t triangle = 0, slot = 0; ///< slot: of its surface (surface_of_slot)
   std::uint32_t kind = 0;               ///< of surface: into ChainCover
 };
@@ -45,6 +48,10 @@ struct ChainList {
 };
 
 inline Vec3<Body> vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+/// Between its normal and the chain.
+inline double cosine_of(const ChainEnd &end) {
+  return dot(vector_of(end.normal), vector_of(end.along));
+}
 inline void put_floats(Vec3<Body> from, float (&to)[3]) {
   to[0] = static_cast<float>(from.x);
   to[1] = static_cast<float>(from.y);

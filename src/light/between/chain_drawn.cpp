@@ -28,10 +28,9 @@ struct Placed {
   [[nodiscard]] std::size_t at() const { return block * replicates + lane; }
 };
 
-void put_vector(Vec3<Body> from, float (&to)[3][backend::lanes], std::size_t lane) {
-  to[0][lane] = static_cast<float>(from.x);
-  to[1][lane] = static_cast<float>(from.y);
-  to[2][lane] = static_cast<float>(from.z);
+void put_vector(const float (&from)[3], float (&to)[3][backend::lanes], std::size_t lane) {
+  for (std::size_t k = 0; k < 3; ++k)
+    to[k][lane] = from[k];
 }
 void put_end(const ChainEnd &from, backend::ChainEnds &to, std::size_t lane) {
   put_vector(from.normal, to.normal, lane);
@@ -82,7 +81,7 @@ std::vector<Placed> arrange(const std::vector<ChainList> &lists, ChainDrawn &to)
   return out;
 }
 
-void fill(const std::vector<Placed> &placed, const Occluder &occluder, ChainDrawn &to) {
+void fill(const std::vector<Placed> &placed, ChainDrawn &to) {
   to.block.assign(to.blocks, {});
   to.run_of.resize(to.blocks);
   for (std::size_t r = 0; r < to.runs.size(); ++r)
@@ -94,8 +93,8 @@ void fill(const std::vector<Placed> &placed, const Occluder &occluder, ChainDraw
   for (const Placed &at : placed) {
     const Chain &c = *at.chain;
     backend::ChainBlock &block = to.block[at.block];
-    to.point_p[at.at()] = occluder.to_point(c.p.point);
-    to.point_q[at.at()] = occluder.to_point(c.q.point);
+    to.point_p[at.at()] = c.p.point;
+    to.point_q[at.at()] = c.q.point;
     to.triangle_p[at.at()] = c.p.triangle;
     to.triangle_q[at.at()] = c.q.triangle;
     put_end(c.p, block.p, at.lane);
@@ -202,7 +201,7 @@ void trace(const std::vector<Placed> &placed, const Occluder &grids, ChainDrawn 
       GridView view(grids, rays);
       for (const Placed *one : of_block[block]) {
         const ChainEnd &from = one->chain->*end;
-        view.add(points[one->at()], from.face, one->lane);
+        view.add(points[one->at()], vector_of(from.face), one->lane);
       }
       for (const GridRay &ray : rays)
         out[ray.at * to.blocks + block] = view.word(ray.at);
@@ -214,8 +213,8 @@ void trace(const std::vector<Placed> &placed, const Occluder &grids, ChainDrawn 
 
 } // namespace
 
-ChainDrawn draw_chains(const ChainRays &rays, const Occluder &occluder, const Occluder *grids,
-                       const ChainCount &count, unsigned threads, const std::atomic<bool> *cancel) {
+ChainDrawn draw_chains(const ChainRays &rays, const Occluder *grids, const ChainCount &count,
+                       unsigned threads, const std::atomic<bool> *cancel) {
   std::vector<ChainList> lists(replicates);
   parallel_for(replicates, threads, [&](std::size_t r) {
     lists[r] = rays.thinned(rays.draw(r, count.first, count.rays_per_replicate, cancel), r,
@@ -225,7 +224,7 @@ ChainDrawn draw_chains(const ChainRays &rays, const Occluder &occluder, const Oc
   if (is_stopped(cancel))
     return out;
   const std::vector<Placed> placed = arrange(lists, out);
-  fill(placed, occluder, out);
+  fill(placed, out);
   put_between(placed, lists, out);
   if (grids != nullptr)
     trace(placed, *grids, out, threads, cancel);
@@ -253,7 +252,7 @@ const ChainDrawn *ChainDrawing::drawn(std::size_t level, unsigned threads,
   return drawn_[level].get(cancel, [&] {
     const Occluder *grids = level < levels ? &grids_ : nullptr; // the reserve's ends ask rays
     return std::make_unique<const ChainDrawn>(
-        draw_chains(rays_, occluder_, grids, count_of(level), threads, cancel));
+        draw_chains(rays_, grids, count_of(level), threads, cancel));
   });
 }
 

@@ -43,8 +43,8 @@ struct ChainDrawn {
 
 /// Draws chains and puts them into blocks; with `grids`, which may be null, for the rays of their
 /// ends' visibility. Of no use, here and below, once `cancel`, which may be null, became true.
-ChainDrawn draw_chains(const ChainRays &rays, const Occluder &occluder, const Occluder *grids,
-                       const ChainCount &count, unsigned threads, const std::atomic<bool> *cancel);
+ChainDrawn draw_chains(const ChainRays &rays, const Occluder *grids, const ChainCount &count,
+                       unsigned threads, const std::atomic<bool> *cancel);
 
 /// Chains of one body for a number of materials, drawn when somebody first needs them. Thread safe;
 /// `scene` and `occluder` must live.

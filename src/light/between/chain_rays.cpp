@@ -76,8 +76,16 @@ Vertex ChainRays::start(double x, double v) const {
 }
 
 ChainEnd ChainRays::end_at(const Vertex &at, Vec3<Body> along) const {
-  return {at.point,           at.face,     at.normal, along,
-          axis_of(at, along), at.triangle, at.slot,   cover_.kind_of(at.slot)};
+  ChainEnd out;
+  out.point = occluder_.to_point(at.point);
+  put_floats(at.face, out.face);
+  put_floats(at.normal, out.normal);
+  put_floats(along, out.along);
+  put_floats(axis_of(at, along), out.axis);
+  out.triangle = at.triangle;
+  out.slot = at.slot;
+  out.kind = cover_.kind_of(at.slot);
+  return out;
 }
 
 void ChainRays::put(const Walk &walk, const Vertex &last, Vec3<Body> back, ChainList &out) const {
@@ -167,6 +175,8 @@ double ChainRays::freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
   constexpr std::size_t fewest = 4, most = 8;
   const std::size_t all = (fewest + ways.size() - 1) / ways.size() * ways.size();
   const std::size_t looks = std::min(all, most);
+  const Vec3<Body> normal = vector_of(end.normal), along = vector_of(end.along),
+                   face = vector_of(end.face);
   std::size_t free = 0, first = 0;
   for (std::size_t k = 0; k < looks; ++k) {
     constexpr unsigned beyond_streams = 40; // numbers of chains leave these bits (number_of_first)
@@ -176,11 +186,13 @@ double ChainRays::freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
       first = std::min(static_cast<std::size_t>(x[3] * static_cast<double>(ways.size())),
                        ways.size() - 1);
     const Direction d =
-        ways[(first + k * all / looks) % ways.size()].draw(end.normal, end.along, x[0], x[1], x[2]);
-    if (!(dot(d.to, end.face) > 0))
+        ways[(first + k * all / looks) % ways.size()].draw(normal, along, x[0], x[1], x[2]);
+    if (!(dot(d.to, face) > 0))
       continue;
     unsigned char is_free = 0;
-    occluder_.is_free(std::span(&end.point, 1), d.to, std::span(&is_free, 1));
+    const Occluder::Point to{static_cast<float>(d.to.x), static_cast<float>(d.to.y),
+                             static_cast<float>(d.to.z)};
+    occluder_.is_free(std::span(&end.point, 1), std::span(&to, 1), std::span(&is_free, 1));
     free += is_free;
   }
   return std::sqrt((static_cast<double>(free) + 0.25) / static_cast<double>(looks));
@@ -188,12 +200,13 @@ double ChainRays::freedom(const ChainEnd &end, const std::vector<Sampler> &ways,
 
 double ChainRays::strength(const ChainList &all, std::size_t chain) const {
   const Chain &c = all.chains[chain];
+  const double cosine_p = cosine_of(c.p), cosine_q = cosine_of(c.q);
   const std::size_t members = cover_.members();
   double square = 0;
   for (std::size_t m = 0; m < members; ++m) {
     const double one = static_cast<double>(all.transmitted[chain * members + m]) *
-                       cover_.strength(m, c.p.kind, dot(c.p.normal, c.p.along)) *
-                       cover_.strength(m, c.q.kind, dot(c.q.normal, c.q.along));
+                       cover_.strength(m, c.p.kind, cosine_p) *
+                       cover_.strength(m, c.q.kind, cosine_q);
     square += one * one / static_cast<double>(members);
   }
   return std::sqrt(square);
@@ -217,9 +230,9 @@ std::uint64_t likeness(const Chain &chain) {
   std::uint64_t out = chain.count == 0 ? 0 : 1;
   out = out << 12U | (chain.p.kind & 4095U);
   out = out << 12U | (chain.q.kind & 4095U);
-  out = out << 9U | cell(chain.p.normal, 8);
-  out = out << 9U | cell(chain.q.normal, 8);
-  return out << 8U | cell(chain.p.along, 6);
+  out = out << 9U | cell(vector_of(chain.p.normal), 8);
+  out = out << 9U | cell(vector_of(chain.q.normal), 8);
+  return out << 8U | cell(vector_of(chain.p.along), 6);
 }
 
 ChainList ChainRays::thinned(const ChainList &all, std::size_t replicate, std::size_t first,

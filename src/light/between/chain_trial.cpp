@@ -72,8 +72,8 @@ std::vector<double> ChainTrial::light_of(const Scene &scene, const ChainSurfaces
   const double ends = (c.from_p + c.from_q) *
                       rays_.freedom(c.p, {Sampler(surfaces.surface(p))}, number) *
                       rays_.freedom(c.q, {Sampler(surfaces.surface(q))}, number + 1);
-  const double cosine_p = dot(c.p.normal, c.p.along), cosine_q = dot(c.q.normal, c.q.along);
-  of.start(c.p.axis, c.p.along);
+  const double cosine_p = cosine_of(c.p), cosine_q = cosine_of(c.q);
+  of.start(vector_of(c.p.axis), vector_of(c.p.along));
   for (std::uint32_t k = c.first; k < c.first + c.count; ++k)
     of.pass(list_.between[k]);
   for (std::size_t b = 0; b < out.size(); ++b)

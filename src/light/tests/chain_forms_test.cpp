@@ -86,7 +86,7 @@ TEST(ChainForms, SideBySideOneByOneAndByTheSurfacesAreTheSameLight) {
   const ChainDrawing drawing(ground.bounces, ground.occluder,
                              ChainCover({{&ground.scene, surfaces}}, nullptr), 4, 3, nullptr);
   const ChainRays rays(ground.bounces, ground.occluder, drawing.cover(), 4, 3);
-  const ChainDrawn drawn = draw_chains(rays, ground.occluder, nullptr, {0, 512, 4096}, 1, nullptr);
+  const ChainDrawn drawn = draw_chains(rays, nullptr, {0, 512, 4096}, 1, nullptr);
   OneByOne chains(drawn, {ground.scene, *surfaces, drawing});
   std::size_t count = 0, straight = 0;
   double worst_lanes = 0, worst_general = 0;
@@ -138,9 +138,9 @@ TEST(ChainForms, AnEndAsksOfAllItsWaysWhetherItIsFree) {
   const ChainCover cover({{&ground.scene, surfaces}}, nullptr);
   const ChainRays rays(ground.bounces, ground.occluder, cover, 2, 5);
   ChainEnd end;
-  end.point = {0.1, 0, 1e-3};
-  end.face = end.normal = {0, 0, 1};
-  end.along = normalized(Vec3<Body>{1, 0, 1}); // its mirror image looks at the wall
+  end.point = ground.occluder.to_point({0.1, 0, 1e-3});
+  end.face[2] = end.normal[2] = 1;
+  put_floats(normalized(Vec3<Body>{1, 0, 1}), end.along); // its mirror image looks at the wall
   Sampler lambert(ground.scene.front[0]);
   lambert.cosine_share = 1;
   Sampler lobe = lambert;
