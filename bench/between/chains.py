@@ -11,9 +11,9 @@ standard errors, of I as it is and in parts of the pose's own. Chains of one see
 each seed is a row. Both programs are umov's; tests/data/bounces has the tables of another one. Minutes per body.
 
 With --rate: CPU time of N such poses on one thread, with masks, mended by rays, for the direct light, as `umov signature`
-takes them by itself, once N others have made what they need (chains, masks of their directions), and the time of that, for each
-accuracy asked of the whole I. The first --poses of the others have the error of I and q = Q/I beside it, direct light included,
-of those above 1 % of the median I, judged by the mean of four runs by paths and rays.
+takes them by itself, once what they need is made (chains, the reserve, masks of their directions), and the time of that, for
+each accuracy asked of the whole I. The first --poses of them have the error of I and q = Q/I beside it, direct light included, of
+those above 1 % of the median I, judged by the mean of four runs by paths and rays.
 
 The judge takes by far the longest. With --judge its runs are kept in FOLDER, a file for each, and taken from there the next
 time; one of another scene, mesh or accuracy, or of other poses, is refused.
@@ -238,7 +238,7 @@ def rates(umov, folder, options, which):
         text = file.read()
     with open(os.path.join(folder, "s.toml"), "w") as file:
         file.write(text.replace('"nm:550"', ", ".join(f'"{band}"' for band in bands)).replace("accuracy_floor = 0\n", ""))
-    poses = random_poses(2 * options.rate)
+    poses = random_poses(options.rate)
     few = options.poses = min(options.poses, options.rate)
     write_geometry(folder, "g.csv", poses[:few])
     runs = np.array([judge_run(umov, folder, options, which, seed)[0] for seed in JUDGE_SEEDS])
@@ -249,19 +249,19 @@ def rates(umov, folder, options, which):
     print(f"{which}: {kept.sum()} poses; the judge's own error of I median {np.median(own):.1e}, 90 % "
           f"{np.quantile(own, 0.9):.1e}", flush=True)
     for accuracy in options.at:
+        spent = []
         begin = time.process_time()
         engine = engine_of(umov, folder, accuracy)
         found = engine.evaluate(poses[:few, :3], poses[:few, 3:])[kept, len(bands) // 2]
-        engine.evaluate(poses[:options.rate, :3], poses[:options.rate, 3:])
-        ready = time.process_time() - begin
-        begin = time.process_time()
-        engine.evaluate(poses[options.rate:, :3], poses[options.rate:, 3:])
-        spent = time.process_time() - begin
-        ready -= spent * (few + options.rate) / options.rate
+        for _ in range(2):
+            engine.evaluate(poses[:, :3], poses[:, 3:])
+            spent.append(time.process_time() - begin)
+            begin = time.process_time()
+        ready = spent[0] - spent[1] * (1 + few / options.rate)
         i = np.abs(found[:, 0] / judge[kept, 0] - 1)
         q = np.abs(found[:, 1] / found[:, 0] - judge[kept, 1] / judge[kept, 0])
         print(f"{which}, {len(bands)} band{'s' if len(bands) > 1 else ''}, accuracy {accuracy}: {ready:.1f} s for what "
-              f"{options.rate} poses prepare, then {options.rate / spent:.0f} poses/s (load {os.getloadavg()[0]:.1f}); error of I "
+              f"{options.rate} poses prepare, then {options.rate / spent[1]:.0f} poses/s (load {os.getloadavg()[0]:.1f}); error of I "
               f"median {np.median(i):.1e}, 90 % {np.quantile(i, 0.9):.1e}, 95 % {np.quantile(i, 0.95):.1e}; of q "
               f"{np.median(q):.1e}, {np.quantile(q, 0.9):.1e}", flush=True)
 
