@@ -82,8 +82,11 @@ UMOV_KERNEL R chain_lobe(const LobeConstants<T> &lobe, const ChainEndAt<R> &at) 
   return density * g * R(0.25) / n_w;
 }
 
+/// Of a direction behind the surface, which other lanes may not be behind, as of one along it:
+/// there is a pole there, and what is no number does not go away by a weight of 0.
 template <class R> UMOV_KERNEL R bent(R cosine, float bend) {
-  return R(2 * (1 + bend)) * cosine / (cosine + R(bend)) - R(1);
+  const R c = max(cosine, R(0));
+  return R(2 * (1 + bend)) * c / (c + R(bend)) - R(1);
 }
 /// Of a degree that the fit of a surface chose, as few operations as the machine has for it.
 template <class R> UMOV_KERNEL R bent_polynomial(const float *c, std::uint32_t degree, R t) {

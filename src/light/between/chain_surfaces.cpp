@@ -52,8 +52,10 @@ template <std::size_t n> struct Sampled {
     for (std::size_t k = 0; k < places; ++k)
       between[k] = f(cosine_at(bend, place(k)));
   }
-  /// One of them as powers of t; returns by what it misses at worst.
-  double fit(std::size_t part, std::size_t degree, float *out) const {
+  /// One of them as powers of t; returns by what it misses at worst, in parts of what `scale` says
+  /// of their values there.
+  template <class Scale>
+  double fit(std::size_t part, std::size_t degree, const Scale &scale, float *out) const {
     const Coefficients c = fit_polynomial(at_node[part], degree);
     std::transform(c.begin(), c.end(), out, [](double x) { return static_cast<float>(x); });
     double worst = 0;
@@ -61,36 +63,41 @@ template <std::size_t n> struct Sampled {
       double sum = 0;
       for (std::size_t power = degree + 1; power-- > 0;)
         sum = sum * place(k) + c[power];
-      worst = std::max(worst, std::abs(sum - between[k][part]));
+      const double error = std::abs(sum - between[k][part]) / scale(between[k]);
+      if (!(error <= worst)) // no number is the worst of all
+        worst = error;
     }
     return worst;
   }
 };
 
-/// All of `n` functions by polynomials of one bend and degree: the lowest that is as good as
-/// wanted, or the best that is good enough; false if there is none. `scale`: what errors are parts
-/// of.
-template <std::size_t n, class Function>
-bool fit_all(const Function &f, double scale, const std::array<float *, n> &out, float &bend,
-             std::uint32_t &degree) {
+/// All of `n` functions by polynomials of one bend and degree: the lowest that misses no more than
+/// is wanted of what `scale` says, or the best of all that is good enough in parts of `most`; false
+/// if there is none.
+template <std::size_t n, class Function, class Scale>
+bool fit_all(const Function &f, const Scale &scale, double most, const std::array<float *, n> &out,
+             float &bend, std::uint32_t &degree) {
   std::vector<Sampled<n>> all;
   for (const double one : {1e3, 1.0, 0.3, 0.1})
     all.emplace_back(one, f);
-  const auto is_fit = [&](const Sampled<n> &sampled, std::size_t of_degree, double error) {
+  const auto miss_of = [&](const Sampled<n> &sampled, std::size_t of_degree, const auto &parts_of) {
+    double worst = 0;
     for (std::size_t part = 0; part < n; ++part)
-      if (!(sampled.fit(part, of_degree, out[part]) <= error * scale))
-        return false;
+      if (const double miss = sampled.fit(part, of_degree, parts_of, out[part]); !(miss <= worst))
+        worst = miss;
     bend = static_cast<float>(sampled.bend);
     degree = static_cast<std::uint32_t>(of_degree);
-    return true;
+    return worst;
   };
   for (std::size_t k = 2; k <= kernel::polynomial_degree; k += 2)
     for (const Sampled<n> &sampled : all)
-      if (is_fit(sampled, k, backend::chain_fit_wanted))
+      if (miss_of(sampled, k, scale) <= backend::chain_fit_wanted)
         return true;
-  return std::ranges::any_of(all, [&](const Sampled<n> &sampled) {
-    return is_fit(sampled, kernel::polynomial_degree, backend::chain_fit_error);
-  });
+  const auto of_most = [most](const auto &) { return most; };
+  const auto whole = [&](const Sampled<n> &sampled) {
+    return miss_of(sampled, kernel::polynomial_degree, of_most);
+  };
+  return whole(*std::ranges::min_element(all, {}, whole)) <= backend::chain_fit_error;
 }
 
 bool fit_reflection(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
@@ -98,7 +105,9 @@ bool fit_reflection(const Surface &surface, std::size_t band, backend::ChainSurf
     const MuellerEntries m = surface.reflection(band, cosine);
     return std::array{m.a, m.b, m.z.real(), m.z.imag()};
   };
-  return fit_all<4>(reflection, surface.reflection(band, 0).a,
+  // Of glass a is a twenty-fifth near the normal of what it is along the surface.
+  const auto reflected = [](const std::array<double, 4> &m) { return m[0]; };
+  return fit_all<4>(reflection, reflected, surface.reflection(band, 0).a,
                     {out.a, out.b, out.z_real, out.z_imaginary}, out.bend, out.degree);
 }
 
@@ -116,7 +125,8 @@ bool fit_products(const Surface &surface, std::size_t band, backend::ChainSurfac
     const auto profiles = [&](double c) {
       return std::array{from.profile(c), to.is_polarized ? from.polarizing(c) * (1 - c * c) : 0};
     };
-    if (!fit_all<2>(profiles, 1, {to.profile, to.polarizing}, to.bend, to.degree))
+    const auto entering = [](const std::array<double, 2> &) { return 1.0; };
+    if (!fit_all<2>(profiles, entering, 1, {to.profile, to.polarizing}, to.bend, to.degree))
       return false;
   }
   return true;

@@ -263,6 +263,41 @@ TEST(Chains, AgreeWithPathsOnPaintAndBrushedMetal) {
   }
 }
 
+// A direction exactly opposite to the normal of one end, beside others that it lights: the fits of
+// what a paint lets in have a pole there, which is not theirs.
+TEST(Chains, LightStraightFromBehindSomeEndsIsANumber) {
+  Material white = rough("paper_asi", 0.3);
+  white.index = constant_index(1.5);
+  white.body = BodyLobe{{{}, {0.6}}, false};
+  const Integrator integrator(scene_of(box_wing(), NormalMode::Flat, {white, white, white}));
+  std::vector<Pose> at;
+  for (const Vec3<Body> &axis : {Vec3<Body>{1, 0, 0}, Vec3<Body>{0, 1, 0}, Vec3<Body>{0, 0, 1}})
+    for (const double side : {-1.0, 1.0})
+      for (const double height : {-0.64, 0.64}) {
+        const Vec3<Body> other = normalized(axis * (0.6 * side) + Vec3<Body>{0.2, 0.3, height});
+        at.push_back({axis * side, other});
+        at.push_back({other, axis * side});
+      }
+  IntegrationOptions paths = by_chains(2, 2e-3);
+  paths.between = BetweenMethod::Paths;
+  paths.max_points = 1u << 17;
+  const auto chains = integrator.evaluate(at, by_chains(2), 2),
+             judge = integrator.evaluate(at, paths, 2);
+  std::array<double, 4> square{};
+  std::size_t lit = 0;
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    ASSERT_TRUE(std::isfinite(chains[k].bands[0].stokes.i)) << k;
+    ASSERT_TRUE(std::isfinite(chains[k].bands[0].half_width.i)) << k;
+    if (!(judge[k].indirect[0].i > 0.02 * judge[k].bands[0].stokes.i))
+      continue;
+    ++lit;
+    add_squares(chains[k].bands[0], judge[k].bands[0], square);
+  }
+  EXPECT_GT(lit, 8U);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_LT(square[k] / static_cast<double>(lit), most_square) << k;
+}
+
 TEST(Chains, PathsDrawWhatGoesBetweenNarrowLobesAndMirrors) {
   const auto narrow = against_paths(
       scene_of(three_plates(), NormalMode::Flat, {rough("paper_al", 0.04), grey(0.5)}), 3, 8);
