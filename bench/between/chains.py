@@ -173,38 +173,40 @@ def light(umov, folder, between, accuracy, seed):
     return stokes(os.path.join(folder, "o.csv")), time.perf_counter() - begin
 
 
-def fingerprint(folder, accuracy, seed):
-    """Of all that a judge's light follows from: what its scene, mesh and poses are, how it is drawn."""
-    out = {"accuracy": accuracy, "seed": seed}
+def fingerprint(umov, folder, accuracy, seed):
+    """Of what a judge's light follows from: version, scene, mesh, poses, and how it is drawn. Not of what a name in the library of
+    materials stands for, nor of a change of paths within a version: remove the folder after either."""
+    version = subprocess.run([umov, "--version"], check=True, capture_output=True, text=True).stdout.strip()
+    out = {"umov": version, "accuracy": accuracy, "seed": seed}
     for what, name in (("scene", "s.toml"), ("mesh", "body.obj"), ("poses", "g.csv")):
         with open(os.path.join(folder, name), "rb") as file:
             out[what] = hashlib.sha256(file.read()).hexdigest()
     return out
 
 
-def read_run(path, wanted):
+def read_run(path, wanted, poses):
     """Stokes and half-widths, [2, pose, 4]; an error if they are of something else."""
     try:
         with open(path) as file:
             known = json.load(file)
         stale = [what for what in wanted if known["of"][what] != wanted[what]]
         found = np.array(known["light"])
-        is_whole = found.shape == (2, len(known["poses"]), 4)
+        is_whole = found.shape == (2, poses, 4) and np.isfinite(found).all()
     except (ValueError, KeyError, TypeError) as error:
         sys.exit(f"error: {path}: no run as --judge writes it ({error!r}): remove it, or name another folder")
     if stale or not is_whole:
-        sys.exit(f"error: {path}: a run of {'another ' + ', another '.join(stale) if stale else 'fewer poses'} than asked: "
+        sys.exit(f"error: {path}: a run of {'another ' + ', another '.join(stale) if stale else 'fewer poses or no numbers'} than asked: "
                  "remove it, or name another folder")
     return found
 
 
 def judge_run(umov, folder, options, which, seed):
     """The same; drawn, and kept where --judge says, unless it is there."""
-    wanted = fingerprint(folder, options.accuracy[1], seed)
+    wanted = fingerprint(umov, folder, options.accuracy[1], seed)
     path = options.judge and os.path.join(
         options.judge, f"{which}-{options.surfaces}-{options.bands.replace(':', '')}-{options.poses}-{seed}.json")
     if path and os.path.exists(path):
-        return read_run(path, wanted)
+        return read_run(path, wanted, options.poses)
     found = light(umov, folder, "paths", options.accuracy[1], seed)[0]
     if path:
         os.makedirs(options.judge, exist_ok=True)
@@ -248,10 +250,12 @@ def rates(umov, folder, options, which):
     own = runs[:, kept, 0].std(axis=0, ddof=1) / 2 / judge[kept, 0]
     print(f"{which}: {kept.sum()} poses; the judge's own error of I median {np.median(own):.1e}, 90 % "
           f"{np.quantile(own, 0.9):.1e}", flush=True)
+    package = package_of(umov)
     for accuracy in options.at:
         spent = []
         begin = time.process_time()
-        engine = engine_of(umov, folder, accuracy)
+        engine = package.Engine(os.path.join(folder, "s.toml"), set={"render.between": "chains"}, accuracy=accuracy, threads=1,
+                                cache=False)
         found = engine.evaluate(poses[:few, :3], poses[:few, 3:])[kept, len(bands) // 2]
         for _ in range(2):
             engine.evaluate(poses[:, :3], poses[:, 3:])
@@ -266,12 +270,11 @@ def rates(umov, folder, options, which):
               f"{np.median(q):.1e}, {np.quantile(q, 0.9):.1e}", flush=True)
 
 
-def engine_of(umov, folder, accuracy):
-    """On one thread, of the package that was built beside the command."""
+def package_of(umov):
+    """The package that was built beside the command."""
     sys.path.insert(0, os.path.join(os.path.dirname(umov), "..", "..", "python"))
     import umov as package
-    return package.Engine(os.path.join(folder, "s.toml"), set={"render.between": "chains"}, accuracy=accuracy, threads=1,
-                          cache=False)
+    return package
 
 
 def main():

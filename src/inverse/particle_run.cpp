@@ -235,7 +235,10 @@ bool ParticleRun::try_steps(const Density &density, const Round &round, std::siz
   for (const Tried &one : proposals)
     turnings.push_back(one.to);
   // Where the light of the last steps has a part, what quick light refuses is not asked for it.
-  const Density asked = density.last > 0 ? Density{density.start, 1, 0} : density;
+  // Half of its power at most: where light has come that quick light does not know, particles come
+  // too.
+  constexpr double most = 0.5;
+  const Density asked = density.last > 0 ? Density{density.start, most, 0} : density;
   std::vector<Particle> tried;
   if (!light(asked, turnings, tried))
     return false;
@@ -246,13 +249,13 @@ bool ParticleRun::try_steps(const Density &density, const Round &round, std::siz
     if (std::log(coin) < asked.log_ratio(tried[j], draws_[k]) + proposals[j].back)
       taken.push_back(j);
   }
+  accepted_ += taken.size();
   if (density.last > 0 && !keep_by_last_light(density, asked, round, first, stride, tried, taken))
     return false;
   for (const std::size_t j : taken) {
     const std::size_t k = first + j * stride;
     draws_[k] = std::move(tried[j]);
     has_moved_[k] = 1;
-    ++accepted_;
   }
   return true;
 }
@@ -272,8 +275,9 @@ bool ParticleRun::keep_by_last_light(const Density &density, const Density &aske
     const std::size_t j = taken[t], k = first + j * stride;
     tried[j].last = std::move(lit[t].last);
     const double coin = uniform4(round.seed, round.stream + coins, k)[2];
-    if (std::log(coin) <
-        density.log_ratio(tried[j], draws_[k]) - asked.log_ratio(tried[j], draws_[k]))
+    const double more =
+        density.log_ratio(tried[j], draws_[k]) - asked.log_ratio(tried[j], draws_[k]);
+    if (std::log(coin) < more)
       kept.push_back(j);
   }
   taken = std::move(kept);

@@ -129,9 +129,10 @@ public:
   [[nodiscard]] bool has(std::size_t k) const { return scenarios_.contains(k); }
   Result<std::optional<OwnAnswer>> answer(const Library &library, std::size_t k,
                                           const ObservedCurve &curve, const SearchOptions &search);
-  /// What light from surface to surface makes of a verdict on a candidate that has answered.
-  Result<void> doubt(std::size_t k, const ObservedCurve &curve, const PoseAnswer &pose,
-                     IdentityWords &words);
+  /// What light from surface to surface that fits leave out makes of the verdict, and notes of it:
+  /// of the best candidate, and where it is to be none of these of all that were asked.
+  Result<std::vector<std::string>> doubt(std::size_t best, const ObservedCurve &curve,
+                                         IdentityWords &words);
   /// Light of a candidate that has answered.
   [[nodiscard]] const SearchedLight *light(std::size_t k) const {
     const auto at = lights_.find(k);
@@ -144,6 +145,9 @@ public:
   [[nodiscard]] const ManifestInput::Light &used(std::size_t k) const { return used_.at(k); }
 
 private:
+  /// `share_between` of a candidate that has answered.
+  Result<double> missing_of(std::size_t k, const ObservedCurve &curve, const PoseAnswer &pose);
+
   const IdentifyRequest &request_;
   const JobOptions &options_;
   ReadyObjects &ready_;
@@ -224,23 +228,47 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
       OwnAnswer{std::move(found), CurveLikelihood(curve, search.errors).log_variance()});
 }
 
-Result<void> OwnLights::doubt(std::size_t k, const ObservedCurve &curve, const PoseAnswer &pose,
-                              IdentityWords &words) {
+Result<double> OwnLights::missing_of(std::size_t k, const ObservedCurve &curve,
+                                     const PoseAnswer &pose) {
   if (pose.modes.empty())
-    return {};
+    return 0.0;
   UMOV_ASSIGN(scenario, ready_.scenario(scenarios_.at(k)));
-  UMOV_ASSIGN(share, share_between(*scenario, *lights_.at(k), curve, pose.modes.front().turning,
-                                   options_, monitor_));
-  words.light_between = share;
-  words.is_between_fitted = lights_.at(k)->between.has_value();
-  if (words.is_between_fitted)
-    return {};
+  return share_between(*scenario, *lights_.at(k), curve, pose.modes.front().turning, options_,
+                       monitor_);
+}
+
+Result<std::vector<std::string>> OwnLights::doubt(std::size_t best, const ObservedCurve &curve,
+                                                  IdentityWords &words) {
+  std::vector<std::string> out;
+  const auto &candidates = words.answer->candidates;
   const double floor = request_.observed.errors.floor;
-  doubt_direct_light(share, floor, words.verdict, words.notes);
-  // "None of these" rests on what each object's light would be, and here that is not known.
-  if (words.verdict == Verdict::NoFit && is_too_much_between(share, floor))
-    words.verdict = Verdict::Undetermined;
-  return {};
+  if (light(best) != nullptr) {
+    UMOV_ASSIGN(share, missing_of(best, curve, candidates[best].answer));
+    words.light_between = share;
+    words.is_between_fitted = light(best)->between.has_value();
+    if (words.verdict != Verdict::NoFit && !words.is_between_fitted)
+      doubt_direct_light(share, floor, "the name may be wrong", words.verdict, out);
+  }
+  if (words.verdict != Verdict::NoFit)
+    return out;
+  // "None of these" rests on what the light of each would be: where that of one is not known, it
+  // may be that one.
+  for (const auto &[k, own] : lights_) {
+    if (own->between)
+      continue;
+    double missing = words.light_between.value_or(0);
+    if (k != best) {
+      UMOV_ASSIGN(of_other, missing_of(k, curve, candidates[k].answer));
+      missing = of_other;
+    }
+    doubt_direct_light(missing, floor,
+                       fmt::format("that {} does not explain the data may be its doing",
+                                   printable(words.names[k])),
+                       words.verdict, out);
+    if (is_too_much_between(missing, floor))
+      words.verdict = Verdict::Undetermined;
+  }
+  return out;
 }
 
 } // namespace
@@ -306,8 +334,10 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   const CurveErrors &errors = request.observed.errors;
   IdentityWords words{
       library.names(), library.errors(), &answer, verdict_of(answer, curve, errors), {}};
-  words.notes = notes_of(words, curve, errors);
   const std::size_t best = best_searched(answer);
+  UMOV_ASSIGN(doubts, own.doubt(best, curve, words));
+  words.notes = notes_of(words, curve, errors);
+  words.notes.insert(words.notes.end(), doubts.begin(), doubts.end());
   PoseAnswer pose = answer.candidates[best].answer;
   pose.errors = errors;
   Table fit;
@@ -316,7 +346,6 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
                            own.columns(best));
     fit = fit_table(observed, model, pose);
     out.light = own.used(best);
-    UMOV_TRY(own.doubt(best, curve, pose, words));
   } else {
     UMOV_TRY(library.lend(best, curve, [&](const Signature &s, std::span<const std::size_t> c) {
       const CurveModel model(curve, lighting_of(s, options.threads), {c.begin(), c.end()});

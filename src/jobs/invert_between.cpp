@@ -79,7 +79,7 @@ bool is_too_much_between(double share, double floor) {
   return share > much * allowed_between(floor);
 }
 
-void doubt_direct_light(double share, double floor, Verdict &verdict,
+void doubt_direct_light(double share, double floor, std::string_view meaning, Verdict &verdict,
                         std::vector<std::string> &notes) {
   if (!(share > allowed_between(floor)))
     return;
@@ -87,9 +87,7 @@ void doubt_direct_light(double share, double floor, Verdict &verdict,
       "light from surface to surface, which this fit leaves out, would be {:.2g} of I in the best "
       "attitude (in the median): more than --floor {:.2g}, so {}; with render.bounces = 4 in the "
       "object's scenario it is in the fit",
-      share, floor,
-      verdict == Verdict::NoFit ? "that no attitude fits may be its doing"
-                                : "the set may lie beside the truth"));
+      share, floor, meaning));
   if (is_too_much_between(share, floor) && verdict == Verdict::Determined)
     verdict = Verdict::Undetermined;
 }
@@ -105,7 +103,10 @@ Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &r
   out.light_between = share;
   out.is_between_fitted = ready.between.has_value();
   if (!out.is_between_fitted)
-    doubt_direct_light(share, request.errors.floor, out.verdict, out.notes);
+    doubt_direct_light(share, request.errors.floor,
+                       out.verdict == Verdict::NoFit ? "that no attitude fits may be its doing"
+                                                     : "the set may lie beside the truth",
+                       out.verdict, out.notes);
   return {};
 }
 

@@ -18,7 +18,8 @@ bool is_too_much_between(double share, double floor);
 /// Where the search left it out: says so if it is more than the floor that was asked for, and takes
 /// a verdict back where it is far more: what grows with the misfit covers errors of each row, not
 /// one that all share.
-void doubt_direct_light(double share, double floor, Verdict &verdict,
+/// `meaning`: of what the question is about, as in "so the name may be wrong".
+void doubt_direct_light(double share, double floor, std::string_view meaning, Verdict &verdict,
                         std::vector<std::string> &notes);
 /// Both, of the best attitude of an answer that fits.
 Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &request,

@@ -158,7 +158,6 @@ TEST(PoseSearch, ParticlesAreLedFromQuickLightToThePosteriorOfTheLast) {
     return sum;
   };
   constexpr int trials = 4;
-  double evidence = 0, along = 0;
   std::size_t lit = 0;
   for (std::uint64_t t = 0; t < trials; ++t) {
     ObservedCurve curve = pass(16);
@@ -168,14 +167,12 @@ TEST(PoseSearch, ParticlesAreLedFromQuickLightToThePosteriorOfTheLast) {
     const auto answer = search_pose({model, quick, quick}, small()),
                alone = search_pose(own, small());
     ASSERT_TRUE(answer && alone);
-    evidence += (answer->log_evidence - alone->log_evidence) / trials;
-    along += (mean_along(*answer) - mean_along(*alone)) / trials;
+    // Two samples of one posterior are up to .15 apart in ln evidence, and .05 in this mean.
+    EXPECT_NEAR(answer->log_evidence, alone->log_evidence, 0.25);
+    EXPECT_NEAR(mean_along(*answer), mean_along(*alone), 0.08);
     lit += model.poses_lit();
   }
-  // Two runs of one posterior are up to .15 apart in ln evidence, and .05 in this mean.
-  EXPECT_NEAR(evidence, 0, 0.2);
-  EXPECT_NEAR(along, 0, 0.04);
-  EXPECT_LT(lit, 700'000U); // 614,000; 814,000 where every step was lit
+  EXPECT_LT(lit, 700'000U); // 814,000 where every step is lit
 }
 
 TEST(PoseSearch, AlongTheValleyOfAGlintTheSearchGoesToTheEnd) {

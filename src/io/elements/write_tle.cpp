@@ -126,10 +126,10 @@ std::string beyond_columns(const ElementSet &set) {
     if (!(std::abs(value) < exponent_max))
       return fmt::format("{} of {} is {:g}; a TLE holds less than 1e9", what, number, value);
   if (is_lost_in_leap_second(set))
-    return fmt::format(
-        "the epoch of {} is {}, at a leap second, which a TLE's day of the year does "
-        "not tell from the second after it",
-        number, to_iso_microseconds(set.epoch));
+    return fmt::format("the epoch of {} is {}, at a leap second or rounds to one, which a TLE's "
+                       "day of the year does "
+                       "not tell from the second after it",
+                       number, to_iso_microseconds(set.epoch));
   return "";
 }
 

@@ -82,7 +82,7 @@ TEST_F(LightBetween, IsNothingOfABall) {
 TEST(DoubtDirectLight, TakesAVerdictBackWhereItIsFarMoreThanTheFloor) {
   const auto judged = [](double share, double floor, Verdict before) {
     std::vector<std::string> notes;
-    doubt_direct_light(share, floor, before, notes);
+    doubt_direct_light(share, floor, "it may be wrong", before, notes);
     return std::pair(before, notes.size());
   };
   using enum Verdict;

@@ -7,7 +7,7 @@ namespace umov {
 namespace {
 
 /// Blocks that several poses are lit by in turn, while the cache has them.
-constexpr std::size_t blocks_at_a_time = 64;
+constexpr std::size_t blocks_at_a_time = backend::chain_blocks_together;
 } // namespace
 
 ChainLevel::ChainLevel(const ChainDrawn &drawn, const ChainMaterials &materials, std::size_t level,
