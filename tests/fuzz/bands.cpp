@@ -4,34 +4,24 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <umov/core/text.h>
 #include <umov/io/passband_file.h>
-#include <unistd.h>
 
 namespace {
 
 using namespace umov;
 
-/// Curves of one name in several folders, and one alone; gone with the process.
-class Curves {
-public:
-  Curves() {
-    for (const char *name : {"one/my.dat", "two/my.dat", "one/deep/my.dat", "own.dat"}) {
-      const auto path = folder_ / name;
-      std::filesystem::create_directories(path.parent_path());
-      std::ofstream(path) << "# unit: nm\n# detector: photon\n500 0\n550 1\n600 0\n";
-    }
-  }
-  ~Curves() { std::filesystem::remove_all(folder_); }
-  Curves(const Curves &) = delete;
-  Curves &operator=(const Curves &) = delete;
-  [[nodiscard]] const std::filesystem::path &folder() const { return folder_; }
-
-private:
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("umov-fuzz-bands-" + std::to_string(::getpid()));
-};
+/// Curves of one name in several folders, and one alone: of the sources, for a folder made here
+/// would stay, since libFuzzer ends without destructors.
+const std::filesystem::path &curves() {
+  static const std::filesystem::path folder = [] {
+    for (const char *name : {"one/my.dat", "two/my.dat", "one/deep/my.dat", "own.dat"})
+      (void)fuzz::must(read_bands({{std::string("file:") + name, {}}}, UMOV_FUZZ_CURVES),
+                       std::string(name) + " can be read");
+    return std::filesystem::path(UMOV_FUZZ_CURVES);
+  }();
+  return folder;
+}
 
 /// Files outside the folder may be odd ones, of which a read may not come back.
 bool stays_inside(const std::string &name) {
@@ -43,7 +33,6 @@ bool stays_inside(const std::string &name) {
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
-  static const Curves curves;
   constexpr std::size_t most = 64; // two bands of the same name are looked for among all pairs
   std::vector<BandEntry> entries;
   std::string_view text = fuzz::text_of(data, size);
@@ -54,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   std::vector<BandFile> files;
-  const auto bands = read_bands(entries, curves.folder(), &files);
+  const auto bands = read_bands(entries, curves(), &files);
   if (!fuzz::is_read(bands))
     return 0;
   fuzz::require(bands->size() >= entries.size(), "each name is a band or more");
