@@ -68,7 +68,7 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
     all.at("unit").get_to(out.unit);
     out.total = whole_at(all, "total");
     out.per_shard = whole_at(all, "per_shard");
-    for (const json &rows : all.at("layout"))
+    for (const json &rows : list_at(all, "layout"))
       out.layout.push_back(whole_of(rows, "layout"));
     all.at("tables").get_to(out.tables);
     all.at("order").get_to(out.order);
@@ -78,7 +78,8 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
       all.at("reduce").get_to(out.reductions);
     if (all.contains("warnings"))
       all.at("warnings").get_to(out.warnings);
-    for (const json &tally : all.value("tallies", json::array()))
+    const json tallies = all.value("tallies", json::array());
+    for (const json &tally : list_of(tallies, "tallies"))
       out.tallies.push_back({tally.at("unit").get<std::string>(),
                              tally.at("words").get<std::string>(),
                              tally.at("all").get<std::string>()});

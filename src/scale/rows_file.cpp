@@ -65,23 +65,27 @@ void check_place(std::size_t at, std::size_t count, std::size_t size, std::size_
     throw std::runtime_error("cells beyond the end");
 }
 
+/// Powers of ten of a double, and its digits.
+constexpr int most_decimals = 330, most_significant = 17;
+
 AboutTable about_table(const json &from, std::size_t end) {
   AboutTable out;
-  for (const json &note : from.at("notes"))
+  for (const json &note : list_at(from, "notes"))
     out.notes.emplace_back(note.at(0).get<std::string>(), note.at(1).get<std::string>());
-  for (const json &one : from.at("columns")) {
+  for (const json &one : list_at(from, "columns")) {
     const json &precision = one.at("precision");
     out.columns.push_back({one.at("name").get<std::string>(),
                            one.at("unit").get<std::string>(),
                            one.at("description").get<std::string>(),
                            no_cells(one.at("type").get<std::string>()),
-                           {precision.at(0).get<std::string>(), digits_of(precision.at(1)),
-                            digits_of(precision.at(2))}});
+                           {precision.at(0).get<std::string>(),
+                            digits_of(precision.at(1), -most_decimals, most_decimals),
+                            digits_of(precision.at(2), 0, most_significant)}});
   }
   constexpr std::array<std::size_t, 4> sizes{8, 8, 4, 1};
-  for (const json &one : from.at("blocks")) {
+  for (const json &one : list_at(from, "blocks")) {
     Block block{whole_at(one, "rows"), {}};
-    if (one.at("columns").size() != out.columns.size())
+    if (list_at(one, "columns").size() != out.columns.size())
       throw std::runtime_error("a block with other columns");
     for (std::size_t c = 0; c < out.columns.size(); ++c) {
       const json &column = one.at("columns").at(c);
@@ -126,9 +130,10 @@ struct RowsFile::State {
     head = {all.at("key").get<std::string>(),
             whole_at(all, "index"),
             {whole_at(all, "first"), whole_at(all, "count")}};
-    for (const json &count : all.value("tallies", json::array()))
+    const json counts = all.value("tallies", json::array());
+    for (const json &count : list_of(counts, "tallies"))
       tallies.push_back(whole_of(count, "tallies"));
-    for (const json &table : all.at("tables")) {
+    for (const json &table : list_at(all, "tables")) {
       names.push_back(table.at("name").get<std::string>());
       tables.push_back(about_table(table, end));
     }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <iterator>
 #include <string_view>
+#include <system_error>
 #include <umov/core/parallel.h>
 #include <variant>
 #include <vector>
@@ -129,10 +130,11 @@ private:
       digits = std::clamp(first - last + 1, 2, precision_->error.empty() ? 16 : 10);
     }
     char text[40];
-    const char *end =
-        std::to_chars(text, std::end(text), value, std::chars_format::scientific, digits - 1).ptr;
+    const auto [end, problem] =
+        std::to_chars(text, std::end(text), value, std::chars_format::scientific, digits - 1);
     double out = value;
-    std::from_chars(text, end, out);
+    if (problem == std::errc{}) // else more digits than any double has: all of them
+      std::from_chars(text, end, out);
     return out;
   }
 

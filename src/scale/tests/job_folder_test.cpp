@@ -87,6 +87,20 @@ TEST_F(JobFolders, HaveNoLayoutOfPartsOrOfMoreThanCanBeCounted) {
   }
 }
 
+TEST_F(JobFolders, HaveListsOfPartsAndTallies) {
+  for (const std::string key : {"layout", "tallies"})
+    for (const char *bad : {"null", "{}", R"({"a": 60, "b": 40})", "60", "\"60\""}) {
+      std::string text = to_json(a_job());
+      const std::size_t at = text.find('[', text.find('"' + key + '"'));
+      ASSERT_NE(at, std::string::npos);
+      text.replace(at, text.find(']', at) + 1 - at, bad);
+      const auto read = lock_from_json(text, "job.json");
+      ASSERT_FALSE(read) << key << " " << bad;
+      EXPECT_NE(read.error().message.find(key + " is no list"), std::string::npos)
+          << read.error().message;
+    }
+}
+
 TEST_F(JobFolders, OfAnotherJobAreRefusedWithTheLineThatDiffers) {
   ASSERT_TRUE(JobFolder::begin(path, a_job()));
   JobLock other = a_job();

@@ -2,6 +2,7 @@
 
 #include <umov/scale/rows_file.h>
 
+#include <cstring>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
@@ -91,6 +92,52 @@ TEST_F(RowsFiles, CutOffAnywhereAreRefused) {
   const std::string bytes = *read_file(folder / "whole.rows");
   for (std::size_t length = 0; length < bytes.size(); length += 7)
     EXPECT_FALSE(RowsFile::read(std::string_view(bytes).substr(0, length), "cut")) << length;
+}
+
+/// The same file with `was` of its foot replaced; what ends it says where that begins and how long
+/// it is, each in eight bytes of the machine, before the mark.
+std::string with_foot(const std::string &bytes, const std::string &was, const std::string &is) {
+  const std::size_t tail = bytes.size() - 24;
+  std::uint64_t begin = 0;
+  std::memcpy(&begin, bytes.data() + tail, 8);
+  std::string foot = bytes.substr(begin, tail - begin);
+  const std::size_t at = foot.find(was);
+  EXPECT_NE(at, std::string::npos) << was << " in " << foot;
+  if (at != std::string::npos)
+    foot.replace(at, was.size(), is);
+  const std::uint64_t length = foot.size();
+  std::string out = bytes.substr(0, begin) + foot + bytes.substr(tail);
+  std::memcpy(out.data() + out.size() - 16, &length, 8);
+  return out;
+}
+
+TEST_F(RowsFiles, OfDigitsThatNoDoubleHasAreRefused) {
+  write();
+  const std::string bytes = *read_file(folder / "whole.rows"), was = R"(["n",3,0])";
+  for (const char *good : {R"(["n",-3,0])", R"(["n",330,0])", R"(["n",0,17])"})
+    EXPECT_TRUE(RowsFile::read(with_foot(bytes, was, good), "good")) << good;
+  for (const char *bad :
+       {R"(["n",18446744073709551615,0])", R"(["n",0,18446744073709551615])", R"(["n",0,-1])",
+        R"(["n",0,18])", R"(["n",331,0])", R"(["n",-331,0])", R"(["n",0.5,0])"}) {
+    const auto read = RowsFile::read(with_foot(bytes, was, bad), "bad");
+    ASSERT_FALSE(read) << bad;
+    EXPECT_NE(read.error().message.find("precision is no number of digits from"), std::string::npos)
+        << read.error().message;
+  }
+}
+
+TEST_F(RowsFiles, WithoutListsWhereListsStandAreRefused) {
+  write();
+  const std::string bytes = *read_file(folder / "whole.rows");
+  for (const char *key : {"notes", "columns", "blocks", "tables", "tallies"})
+    for (const char *bad : {"null", "{}", "7"}) {
+      // What stood there goes on under a key that nobody asks for.
+      const std::string was = '"' + std::string(key) + R"(":)";
+      const auto read = RowsFile::read(with_foot(bytes, was, was + bad + R"(,"x":)"), "bad");
+      ASSERT_FALSE(read) << key << " " << bad;
+      EXPECT_NE(read.error().message.find(std::string(key) + " is no list"), std::string::npos)
+          << read.error().message;
+    }
 }
 
 TEST_F(RowsFiles, WithAnyByteChangedAreReadOrRefusedButNeverBeyondTheirEnd) {

@@ -89,6 +89,19 @@ TEST(Table, RowsAreTheSameWhateverStandsAboveThem) {
                  "-0,0.1,7,,True\n");
 }
 
+TEST(Table, MoreDigitsThanADoubleHasAreAllOfThem) {
+  for (const int significant : {17, 40, 1000}) {
+    Table table; // what another number left behind is no digit of it
+    table.add("a", "", "", std::vector<double>{2. / 3});
+    table.add("x", "", "", std::vector<double>{1. / 3});
+    table.set_precision("a", {"", 0, 16});
+    table.set_precision("x", {"", 0, significant});
+    std::string csv;
+    append_csv_rows(table, 0, 1, csv);
+    EXPECT_EQ(csv, "0.6666666666666666,0.3333333333333333\n") << significant;
+  }
+}
+
 TEST(Table, JsonHasNullForUndefined) {
   const auto json = nlohmann::json::parse(to_json(sample()));
   ASSERT_EQ(json.size(), 3u);
