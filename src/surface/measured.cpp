@@ -24,37 +24,6 @@ std::vector<double> distinct(std::vector<double> values) {
 
 using Axis = std::vector<double>::const_iterator;
 
-/// Each albedo takes ten thousand values, which take three times as long in the plane of incidence:
-/// of a table with more angles or wavelengths some are looked at only.
-constexpr std::size_t most_checked = 32, most_checked_in_plane = 20;
-
-/// At most `count` values of an axis, and one at least, evenly chosen with its ends.
-std::vector<double> spread(const std::vector<double> &axis, std::size_t count) {
-  if (axis.size() <= count)
-    return axis;
-  std::vector<double> out{axis.front()};
-  for (std::size_t k = 1; k < count; ++k)
-    out.push_back(axis[k * (axis.size() - 1) / (count - 1)]);
-  return out;
-}
-
-/// At most `count` wavelengths, and one at least: those that send most towards the directions of
-/// the table, as an albedo would count it. `samples` in their order.
-std::vector<double> brightest(const std::vector<BrdfSample> &samples, std::size_t count) {
-  constexpr double least = 0.01; // straight up and along the surface count a little, too
-  std::vector<std::pair<double, double>> sent; // less what is sent, for the largest first; nm
-  for (const BrdfSample &s : samples) {
-    if (sent.empty() || sent.back().second != s.wavelength_nm)
-      sent.emplace_back(0, s.wavelength_nm);
-    sent.back().first -= s.mueller[0] * std::max(least, std::sin(2 * s.theta_o_deg * pi / 180));
-  }
-  std::ranges::sort(sent);
-  std::vector<double> out;
-  for (std::size_t k = 0; k < std::clamp<std::size_t>(count, 1, sent.size()); ++k)
-    out.push_back(sent[k].second);
-  return out;
-}
-
 /// Delta M^T Delta, Delta = diag(1, 1, -1, 1): the matrix of the way back.
 Matrix way_back(const Matrix &m) {
   Matrix out{};
@@ -101,9 +70,13 @@ template <class Take>
 void for_nodes(const std::array<std::vector<double>, 4> &axes, const std::array<double, 4> &place,
                const Take &take) {
   std::array<Place, 4> p;
-  for (std::size_t k = 0; k < 4; ++k)
+  unsigned between = 0; // axes on which the place is on no node: both neighbours count
+  for (unsigned k = 0; k < 4; ++k) {
     p[k] = place_of(axes[k], place[k]);
-  for (unsigned corner = 0; corner < 16; ++corner) {
+    between |= p[k].t > 0 ? 1u << k : 0u;
+  }
+  unsigned corner = 0;
+  do {
     double weight = 1;
     std::size_t at = 0;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -111,9 +84,9 @@ void for_nodes(const std::array<std::vector<double>, 4> &axes, const std::array<
       weight *= high ? p[k].t : 1 - p[k].t;
       at = at * axes[k].size() + (high ? p[k].high : p[k].low);
     }
-    if (weight > 0)
-      take(weight, at);
-  }
+    take(weight, at);
+    corner = (corner - between) & between; // the next of those axes' bits alone
+  } while (corner != 0);
 }
 
 bool holds(const std::vector<double> &axis, double at) {
@@ -232,23 +205,16 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
         worst = std::max(worst, std::abs(back[k] - s.mueller[k]));
     }
   out.asymmetry_ = largest > 0 ? worst / largest : 0;
-  double albedo = 0, at = 0;
-  const std::size_t most = out.is_in_plane_ ? most_checked_in_plane : most_checked;
-  for (const double nm : brightest(samples, most / out.axes_[1].size()))
-    for (const double i : spread(out.axes_[1], most))
-      if (const double a = i < 90 ? out.albedo(nm, i * pi / 180) : 0; a > albedo) {
-        albedo = a;
-        at = i;
-      }
+  const Albedo brightest = out.largest_albedo(remarks);
   std::string trouble;
   if (out.asymmetry_ > 0.05)
     trouble =
         fmt::format("the table is not reciprocal: f(i, o) and f(o, i) differ by up to {:.1f} % "
                     "of its largest value",
                     100 * out.asymmetry_);
-  if (albedo > 1 + 1e-4)
+  if (brightest.value > 1 + 1e-4)
     trouble += fmt::format("{}the table gives more than it gets: albedo {:.3f} at {:g} deg",
-                           trouble.empty() ? "" : "; ", albedo, at);
+                           trouble.empty() ? "" : "; ", brightest.value, brightest.theta_i_deg);
   if (!trouble.empty() && !accept)
     return fail(ErrorCode::BadInput, trouble + ". Pass --accept (or accept = true) to take it.");
   if (!trouble.empty())
@@ -294,10 +260,20 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
   // incidence on the half vector = (i + s)/2: each measured i gives the wanted tilt twice.
   const double tilt = tilt_rad * 180 / pi, wanted = std::abs(incidence_rad) * 180 / pi;
   const double last = axes_[2].back();
-  const auto value_at = [&](double i, double o, double phi) {
+  const Place at_nm = place_of(axes_[0], nm);
+  // Of the measured incidence `i` in its order, on the mirror's side or on the source's.
+  const auto value_at = [&](std::size_t i, double o, bool is_mirror_side) {
+    const Place at_o = place_of(axes_[2], o);
+    const auto add = [&](std::size_t w, std::size_t k, double weight) {
+      const std::size_t row = (w * axes_[1].size() + i) * axes_[2].size() + k;
+      return weight > 0 ? weight * values_[2 * row + (is_mirror_side ? 1 : 0)][0] : 0;
+    };
     double out = 0;
-    for_nodes(axes_, {nm, i, o, phi},
-              [&](double weight, std::size_t at) { out += weight * values_[at][0]; });
+    for (const auto &[k, weight] :
+         {std::pair(at_o.low, 1 - at_o.t), std::pair(at_o.high, at_o.t)}) {
+      out += add(at_nm.low, k, (1 - at_nm.t) * weight);
+      out += add(at_nm.high, k, at_nm.t * weight);
+    }
     return out;
   };
   std::array<std::pair<double, double>, 6> all; // incidence on the half vector, value
@@ -309,7 +285,9 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
     for (const Axis i : {at, at == begin ? end : at - 1})
       if (i != end) {
         const double s = *i - 2 * side * tilt;
-        all[count++] = {std::abs(*i - side * tilt), value_at(*i, std::abs(s), s >= 0 ? 180 : 0)};
+        all[count++] = {
+            std::abs(*i - side * tilt),
+            value_at(static_cast<std::size_t>(i - axes_[1].begin()), std::abs(s), s >= 0)};
       }
   };
   const Axis begin = axes_[1].begin(), end = axes_[1].end();
@@ -325,7 +303,7 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
          -1, true);
   const std::span found(all.data(), count);
   if (found.empty()) // beyond what was measured: the nearest angle that was
-    return value_at(axes_[1].back(), last, 0);
+    return value_at(axes_[1].size() - 1, last, false);
   std::sort(found.begin(), found.end());
   if (wanted <= found.front().first)
     return found.front().second;
@@ -336,6 +314,20 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
       return (1 - t) * found[k - 1].second + t * found[k].second;
     }
   return found.back().second;
+}
+
+double MeasuredBrdf::m00(double nm, double i, double o, double phi) const {
+  const auto value = [&](double from, double to) {
+    double out = 0;
+    for_nodes(axes_, {nm, from, to, phi},
+              [&](double weight, std::size_t at) { out += weight * values_[at][0]; });
+    return out;
+  };
+  const bool there = holds(axes_[1], i) && holds(axes_[2], o);
+  const bool back = holds(axes_[1], o) && holds(axes_[2], i);
+  if (there == back)
+    return 0.5 * (value(i, o) + value(o, i));
+  return there ? value(i, o) : value(o, i);
 }
 
 double MeasuredBrdf::albedo(double wavelength_nm, double theta_i_rad) const {
@@ -354,7 +346,9 @@ double MeasuredBrdf::albedo(double wavelength_nm, double theta_i_rad) const {
     for (std::size_t p = 1; p < phi.size(); ++p)
       sum += gauss_integral<6>(theta[t - 1], theta[t], [&](double o) {
         return std::cos(o) * std::sin(o) * gauss_integral<6>(phi[p - 1], phi[p], [&](double from) {
-                 return (*this)(wavelength_nm, theta_i_rad, o, pi - from)[0];
+                 return is_in_plane_ ? (*this)(wavelength_nm, theta_i_rad, o, pi - from)[0]
+                                     : m00(wavelength_nm, theta_i_rad * 180 / pi, o * 180 / pi,
+                                           (pi - from) * 180 / pi);
                });
       });
   return 2 * sum;

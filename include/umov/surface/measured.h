@@ -28,7 +28,9 @@ public:
   /// taken to be isotropic about the normal: the same tilt to any side gives the same. BadInput if
   /// the grid has holes; if a table is not reciprocal within 5 % of its largest value, or any
   /// gives more than it gets, and `accept` is false, with the numbers. `remarks` says where the
-  /// grid is too coarse, ends too early or holds the floor of an instrument.
+  /// grid is too coarse, ends too early or holds the floor of an instrument, and
+  /// where of many wavelengths and incidences the brightest alone were asked whether they give more
+  /// than they get.
   static Result<MeasuredBrdf> from(std::vector<BrdfSample> samples, bool has_polarization,
                                    bool accept, std::vector<std::string> &remarks);
 
@@ -61,9 +63,23 @@ private:
   /// The same table with some of its nodes only.
   [[nodiscard]] MeasuredBrdf on_nodes(const std::array<std::vector<double>, 4> &axes) const;
   void remark_on_grid(std::vector<std::string> &remarks) const;
+  /// Directional albedo at a wavelength and an incidence of the table.
+  struct Albedo {
+    double value = 0, wavelength_nm = 0, theta_i_deg = 0;
+  };
+  /// What the nodes at (theta_o, phi) count in the albedo at an incidence, by their own values
+  /// alone: what `operator()` makes of the way back, or in the plane of other incidences, is left
+  /// aside.
+  [[nodiscard]] std::vector<double> node_weights(double theta_i_deg) const;
+  /// Estimates by these weights, of all wavelengths at all incidences below 90 deg.
+  [[nodiscard]] std::vector<Albedo> albedos_by_nodes() const;
+  /// The largest albedo at the nodes: of many, of those with the largest estimates, with a remark.
+  [[nodiscard]] Albedo largest_albedo(std::vector<std::string> &remarks) const;
   /// The table can say what the way back of a sample gives.
   [[nodiscard]] bool is_partner_known(const BrdfSample &sample) const;
   [[nodiscard]] double in_plane(double nm, double tilt_rad, double incidence_rad) const;
+  /// m00 of `operator()` alone [deg], which the way back has too: an albedo takes many.
+  [[nodiscard]] double m00(double nm, double i, double o, double phi) const;
   [[nodiscard]] std::array<double, 16> look_up(double nm, double i, double o, double phi) const;
   std::array<std::vector<double>, 4> axes_; ///< nm, theta_i, theta_o, phi [deg]
   std::vector<std::array<double, 16>> values_;

@@ -133,6 +133,60 @@ TEST(Measured, OneWavelengthOfManyThatGivesMoreThanItGetsIsFound) {
   EXPECT_TRUE(MeasuredBrdf::from(lambert_spectrum(5, .2, .3), false, false, remarks));
 }
 
+/// Wavelengths of 18 incidences, which are the observer's angles too: ten of them two tenths of a
+/// degree apart, where a lobe stands in the mirror direction, and at the last wavelength m00 = .4
+/// everywhere.
+std::vector<BrdfSample> lobes_and_one_lambert(int wavelengths, const std::vector<double> &phi) {
+  std::vector<double> theta{0, 10, 20, 28};
+  for (int k = 0; k < 10; ++k)
+    theta.push_back(29 + .2 * k);
+  theta.insert(theta.end(), {32, 40, 60, 80});
+  const auto is_dense = [](double angle) { return angle >= 29 && angle < 31; };
+  std::vector<BrdfSample> out;
+  for (int w = 1; w <= wavelengths; ++w)
+    for (const double i : theta)
+      for (const double o : theta)
+        for (const double p : phi) {
+          const double lobe = is_dense(i) && is_dense(o) && p == 180 ? 3 : .1;
+          out.push_back({500. + w, i, o, p, {w == wavelengths ? .4 : lobe}});
+        }
+  return out;
+}
+
+TEST(Measured, ABroadLobeIsFoundBesideDenseNodesOfANarrowOne) {
+  // Lambert's albedo is pi m00 = 1.257; that of the others is below 1: .314 + 2.9 pi sin(30 deg)
+  // cos(30 deg) 3 deg < .53.
+  for (const auto &phi : {std::vector<double>{0, 180}, {0, 90, 180}})
+    for (const int wavelengths : {2, 10}) { // few enough that all are asked, and not
+      std::vector<std::string> remarks;
+      const auto refused =
+          MeasuredBrdf::from(lobes_and_one_lambert(wavelengths, phi), false, false, remarks);
+      ASSERT_FALSE(refused) << phi.size() << " azimuths, " << wavelengths << " wavelengths";
+      // (At which of its incidences is a matter of the last digits.)
+      EXPECT_EQ(refused.error().message.find("the table gives more than it gets: albedo 1.257 at "),
+                0u)
+          << refused.error().message;
+      EXPECT_EQ(says(remarks, "asked at the 100 brightest of 180 pairs of wavelength and theta_i"),
+                wavelengths == 10);
+      auto narrow = lobes_and_one_lambert(2, phi);
+      std::erase_if(narrow, [](const BrdfSample &s) { return s.wavelength_nm > 501; });
+      EXPECT_TRUE(MeasuredBrdf::from(narrow, false, false, remarks));
+    }
+}
+
+TEST(Measured, AnExcessAtOneGrazingIncidenceIsFound) {
+  std::vector<BrdfSample> samples;
+  for (const double nm : {500., 600.})
+    for (const double i : steps(90, 1))
+      for (const double o : steps(90, 1))
+        samples.push_back({nm, i, o, 0, {nm == 600 && (i == 88 || o == 88) ? .4 : .2}});
+  std::vector<std::string> remarks;
+  const auto refused = MeasuredBrdf::from(samples, false, false, remarks);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("albedo 1.257 at 88 deg"), std::string::npos)
+      << refused.error().message; // pi m00
+}
+
 TEST(Measured, AMuellerTableIsReciprocalToTheLastBit) {
   Material paint;
   paint.index = constant_index(1.5);
