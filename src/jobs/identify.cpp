@@ -271,6 +271,17 @@ Result<std::vector<std::string>> OwnLights::doubt(std::size_t best, const Observ
   return out;
 }
 
+/// Verdict and notes, and what light between surfaces makes of them.
+Result<IdentityWords> words_of(const Library &library, OwnLights &own, const IdentityAnswer &answer,
+                               const ObservedCurve &curve, const CurveErrors &errors) {
+  IdentityWords words{
+      library.names(), library.errors(), &answer, jobs::verdict_of(answer, curve, errors), {}};
+  UMOV_ASSIGN(doubts, own.doubt(best_searched(answer), curve, words));
+  words.notes = jobs::notes_of(words, curve, errors);
+  words.notes.insert(words.notes.end(), doubts.begin(), doubts.end());
+  return words;
+}
+
 } // namespace
 
 Result<std::string> library_text(const std::string &folder) {
@@ -332,12 +343,8 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
       }};
   UMOV_ASSIGN(answer, identify(curve, candidates, how));
   const CurveErrors &errors = request.observed.errors;
-  IdentityWords words{
-      library.names(), library.errors(), &answer, verdict_of(answer, curve, errors), {}};
+  UMOV_ASSIGN(words, words_of(library, own, answer, curve, errors));
   const std::size_t best = best_searched(answer);
-  UMOV_ASSIGN(doubts, own.doubt(best, curve, words));
-  words.notes = notes_of(words, curve, errors);
-  words.notes.insert(words.notes.end(), doubts.begin(), doubts.end());
   PoseAnswer pose = answer.candidates[best].answer;
   pose.errors = errors;
   Table fit;
