@@ -210,10 +210,8 @@ def judge_run(umov, folder, options, which, seed):
     found = light(umov, folder, "paths", options.accuracy[1], seed)[0]
     if path:
         os.makedirs(options.judge, exist_ok=True)
-        with open(os.path.join(folder, "g.csv")) as file:
-            poses = [[float(x) for x in row] for row in csv.reader(list(file)[1:])]
         with open(path + ".part", "w") as file:
-            json.dump({"of": wanted, "poses": poses, "light": found.tolist()}, file)
+            json.dump({"of": wanted, "light": found.tolist()}, file)
         os.replace(path + ".part", path)
     return found
 

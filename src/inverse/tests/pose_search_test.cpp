@@ -12,6 +12,16 @@ Quaternion any_attitude(std::uint64_t seed, std::uint64_t trial) {
   return attitude_grid(100'003)[static_cast<std::size_t>(u[0] * 100'003)];
 }
 
+/// Light of a box that is off by a part of I, up and down as the Sun goes along its x axis.
+PoseLighting off_by(double part, double frequency) {
+  return [part, frequency](std::span<const Pose> poses, StokesTable &out) {
+    (void)Box()(poses, out);
+    for (std::size_t k = 0; k < out.i.size(); ++k)
+      out.i[k] *= 1 + part * std::sin(frequency * poses[k / out.bands].sun.x);
+    return true;
+  };
+}
+
 TEST(PoseSearch, TheTruthIsInTheSetAsOftenAsItSays) {
   const Box box;
   int inside = 0, found = 0;
@@ -124,16 +134,10 @@ TEST(PoseSearch, FaintLightOfFiltersInTurnRulesNothingOutEarly) {
 
 TEST(PoseSearch, AQuickModelSearchesAndTheModelItselfAnswers) {
   const Box box;
-  const PoseLighting slightly_off = [&](std::span<const Pose> poses, StokesTable &out) {
-    (void)box(poses, out);
-    for (std::size_t k = 0; k < out.i.size(); ++k)
-      out.i[k] *= 1 + 0.01 * std::sin(40 * poses[k / out.bands].sun.x);
-    return true;
-  };
   const Quaternion truth = attitude_grid(100'003)[31'415];
   ObservedCurve curve = pass(24);
   observe(curve, box, {truth, {}}, 50, 1);
-  const CurveModel model(curve, box, {0, 1}), quick(curve, slightly_off, {0, 1});
+  const CurveModel model(curve, box, {0, 1}), quick(curve, off_by(0.01, 40), {0, 1});
   const auto answer = search_pose({model, quick, quick}, small()),
              alone = search_pose(model, small());
   ASSERT_TRUE(answer && alone);
@@ -145,12 +149,6 @@ TEST(PoseSearch, AQuickModelSearchesAndTheModelItselfAnswers) {
 // of a search that has no other light all the same.
 TEST(PoseSearch, ParticlesAreLedFromQuickLightToThePosteriorOfTheLast) {
   const Box box;
-  const PoseLighting far_off = [&](std::span<const Pose> poses, StokesTable &out) {
-    (void)box(poses, out);
-    for (std::size_t k = 0; k < out.i.size(); ++k)
-      out.i[k] *= 1 + 0.8 * std::sin(3 * poses[k / out.bands].sun.x);
-    return true;
-  };
   const auto mean_along = [](const PoseAnswer &answer) {
     double sum = 0;
     for (const PoseSample &s : answer.samples)
@@ -162,7 +160,7 @@ TEST(PoseSearch, ParticlesAreLedFromQuickLightToThePosteriorOfTheLast) {
   for (std::uint64_t t = 0; t < trials; ++t) {
     ObservedCurve curve = pass(16);
     observe(curve, box, {any_attitude(107, t), {}}, 3, t);
-    const CurveModel model(curve, box, {0, 1}), quick(curve, far_off, {0, 1}),
+    const CurveModel model(curve, box, {0, 1}), quick(curve, off_by(0.8, 3), {0, 1}),
         own(curve, box, {0, 1});
     const auto answer = search_pose({model, quick, quick}, small()),
                alone = search_pose(own, small());
