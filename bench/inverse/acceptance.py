@@ -3,10 +3,11 @@
 just what the search is told (coverage.py): photons, floor, zero points. Materials are taken for right unless the options say otherwise.
 Prints a line a curve, then the summary.
 
-usage: acceptance.py OBJECT TRIALS [--snr 20] [--seed 1] [--floor 0.005] [--first TRIAL] [--third 0|1|2] [--clouds] [--case-r] [--umov PATH] [--work DIR] [options of umov invert]
+usage: acceptance.py OBJECT TRIALS [--snr 20] [--seed 1] [--floor 0.005] [--first TRIAL] [--third 0|1|2] [--clouds] [--case-r] [--wrong 1] [--umov PATH] [--work DIR] [options of umov invert]
 OBJECT: as blind.py has them. --third: 40 epochs in that third of the pass instead of one every 12 s of all of it. --clouds: the air of every epoch lets through
 another part (normal in ln, a third), which is free in the fit. --case-r: the pass of case_r.py in 40 epochs, noise of photons alone, and S/N of the I (550 nm) that half of
 all attitudes and epochs exceed, not of the mean I of each curve, of which a glint is the larger part. Seconds are those of the processor.
+--wrong 1: the true object is another one, as blind.py has it; the fit is told the floor, which is not put in, and takes the materials for unknown.
 missed: the truth itself fits better than the best mode by more than 2 in chi-square (with the gains that the data were made with, so it fits a little better still)."""
 import math
 import random
@@ -52,12 +53,11 @@ def typical_light(o, work, meshes):
 
 
 def span_of(third, is_case_r):
-    if is_case_r:
-        return case_r.SPAN, case_r.STEP_S
     if third is None:
-        return blind.SPAN, 12
-    length = (LIT_S[1] - LIT_S[0]) / 3
-    begin = LIT_S[0] + third * length
+        return (case_r.SPAN, case_r.STEP_S) if is_case_r else (blind.SPAN, 12)
+    first, last = (case_r.MIDDLE_S - case_r.HALF_S + case_r.STEP_S, case_r.MIDDLE_S + case_r.HALF_S) if is_case_r else LIT_S
+    length = (last - first) / 3
+    begin = first + third * length
     return (coverage.clock(begin), coverage.clock(begin + length - 1)), length / 40
 
 
@@ -78,7 +78,7 @@ def asked(o, work, meshes, trial):
     rows = blind.make_curve(o, work, meshes, trial, blind.inertial(truth), step, rng, span, o.scenario)
     if not any(float(row["intensity"]) > 0 for row in rows):
         return None  # no light at all: nothing was seen
-    chi2 = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, o.floor, rng, work / "obs.csv",
+    chi2 = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, 0 if o.wrong else o.floor, rng, work / "obs.csv",
                              EXACT if o.case_r else coverage.ZERO_POINT_SD, o.typical)
     began = processor_s()
     verdict, _ = blind.asked(o, work, "pose", *(["--clouds"] if o.clouds else []))
@@ -87,7 +87,7 @@ def asked(o, work, meshes, trial):
     off = [min(blind.apart(t, m["q"]) for t in same) for m in verdict["modes"]]
     told = told_deg(work / "answer/modes.ecsv", off.index(min(off)))
     out = Answer(off[0], min(off), told, len(off), blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"],
-                 not o.clouds and verdict["chi2"] > chi2 + 2, verdict["verdict"] == "determined", seconds)
+                 not o.clouds and not o.wrong and verdict["chi2"] > chi2 + 2, verdict["verdict"] == "determined", seconds)
     phases = [float(row["phase_angle"]) for row in rows]
     print(f"{o.object} {trial}: best {out.best:.3f}, nearest {out.nearest:.3f} deg (told {out.told:.3f}) of {out.modes} modes, {'in' if out.is_held else 'OUT'}, set {100 * out.share:.2g} %, "
           f"chi2 {verdict['chi2']:.1f} of {verdict['dof']}, truth's {chi2:.1f}{', MISSED' if out.is_missed else ''}, {verdict['verdict']}, floor {verdict['floor']:.3f}, {len(rows) // 3} epochs, "
@@ -100,11 +100,15 @@ def main():
     parser.add_argument("--third", type=int, choices=(0, 1, 2))
     parser.add_argument("--clouds", action="store_true")
     parser.add_argument("--case-r", action="store_true")
+    parser.add_argument("--wrong", type=float, default=0)
     o, work = coverage.told(parser)
     o.typical, o.scenario = None, blind.SCENARIO
     if o.case_r:
-        o.floor, o.scenario = 0, case_r.scenario(blind.SCENARIO, work)
+        o.scenario = case_r.scenario(blind.SCENARIO, work)
+        o.floor = o.floor if o.wrong else 0
         o.rest = coverage.fit_options(o.floor, ["--zero-point-sd", EXACT, "--largest-floor", 0, *o.given])
+    if o.wrong:
+        o.rest = ["--floor", o.floor, *(["--zero-point-sd", EXACT] if o.case_r else []), *o.given]
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
         blind.make_mesh(o.umov, words, mesh)

@@ -7,7 +7,7 @@ usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S [--about x|
 OBJECT: agena, hst, box-wing, cubesat, metals (a box-wing of four rough metals), box or grey-box (chamfered_box.py). --truth mitsuba: the data's light is another program's
 (mitsuba_truth.py); before the answers stands how far it is from umov's rays. --surfaces 3: light between surfaces in the data, not in the fit. --spin: the body turns about a random axis; the search is told its period to 1 %.
 --wrong 1: the true object is another one than the one that is fitted: slopes of each material's lobe are 20 % off (normal, ln), reflectances of
-paints 10 %, haze 30 %, lengths along each axis of the mesh 2.5 % (areas 3.5 %); other numbers are parts or multiples of that."""
+paints 10 %, haze 30 %, lengths along each axis of the mesh 2.5 % (areas 3.5 %; of boxes slopes 10 %, the area of each facet 5 %, each component of its normal .5 deg); other numbers are parts or multiples of that."""
 import argparse
 import json
 import math
@@ -212,9 +212,12 @@ def in_toml(value):
 
 
 def other_material(name, much, rng):
-    """A material of the library, a little off, as a table of a scenario."""
-    table = tomllib.loads((ROOT / f"data/materials/{name}.toml").read_text())["material"][name]
-    slope = math.exp(0.2 * much * rng.gauss(0, 1))
+    """A material of the library or of the boxes, a little off, as a table of a scenario."""
+    if name in chamfered_box.MATERIAL_OF:
+        table = tomllib.loads(chamfered_box.MATERIAL_OF[name])
+    else:
+        table = tomllib.loads((ROOT / f"data/materials/{name}.toml").read_text())["material"][name]
+    slope = math.exp((0.1 if name in chamfered_box.MATERIAL_OF else 0.2) * much * rng.gauss(0, 1))
     for key, power in (("alpha", 1), ("m", -2), ("nu", -2), ("nv", -2)):
         if key in table.get("distribution", {}):
             table["distribution"][key] *= slope**power
@@ -234,12 +237,15 @@ def other_object(o, trial, scenario, mesh, path):
     names = sorted(set(MATERIALS[o.object].values()))
     for name in names:
         scenario = scenario.replace(f'"{name}"', f'"true_{name}"')
-    factor = [math.exp(0.025 * o.wrong * rng.gauss(0, 1)) for _ in range(3)]
-    lines = mesh.read_text().splitlines()
-    for k, line in enumerate(lines):
-        if line.startswith("v "):
-            lines[k] = "v " + " ".join(f"{float(x) * f:.9g}" for x, f in zip(line.split()[1:], factor))
-    path.write_text("\n".join(lines) + "\n")
+    if o.object in ("box", "grey-box"):
+        chamfered_box.write_other_mesh(mesh, path, 0.05 * o.wrong, math.radians(0.5) * o.wrong, rng)
+    else:
+        factor = [math.exp(0.025 * o.wrong * rng.gauss(0, 1)) for _ in range(3)]
+        lines = mesh.read_text().splitlines()
+        for k, line in enumerate(lines):
+            if line.startswith("v "):
+                lines[k] = "v " + " ".join(f"{float(x) * f:.9g}" for x, f in zip(line.split()[1:], factor))
+        path.write_text("\n".join(lines) + "\n")
     return scenario.replace(str(mesh), str(path)) + "".join(other_material(name, o.wrong, rng) for name in names)
 
 

@@ -3,6 +3,7 @@ from 68 to 148 deg, 40 epochs of which the first is in the Earth's shadow. Direc
 import math
 
 from coverage import clock
+from vectors import cross, dot, unit
 
 EARTH_KM, HEIGHT_KM, GM = 6378.0, 700.0, 398600.4
 BESIDE_RAD, SUN = 0.25, (-0.35, 0.85, 0.40)  # the Sun along zenith, flight and what is left
@@ -10,19 +11,6 @@ MIDDLE_S, HALF_S, EPOCHS = 5 * 3600 + 12 * 60, 240, 40  # of 2018-01-21
 STEP_S = 2 * HALF_S / (EPOCHS - 1)
 SPAN = (clock(MIDDLE_S - HALF_S), clock(MIDDLE_S + HALF_S + 1))
 DAYS = 6594.5 + MIDDLE_S / 86400  # since J2000
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def unit(v):
-    n = math.sqrt(dot(v, v))
-    return [x / n for x in v]
 
 
 def to_sun():

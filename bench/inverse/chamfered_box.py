@@ -1,6 +1,9 @@
 """A chamfered box of 26 facets, 1.0 x 1.3 x 1.9 m, of gold, aluminium, cells under glass and white paint, or of greys: convex, so nothing hides anything and
 nothing lights another; the body of which much is asked that takes many curves."""
 import itertools
+import math
+
+from vectors import cross, dot, unit
 
 EDGES_M, CHAMFER_M = (1.0, 1.3, 1.9), 0.08
 SIDES = ("px", "mx", "py", "my", "pz", "mz")
@@ -15,6 +18,7 @@ MATERIALS = {  # slopes from 12 deg (paint) to 2 deg (cells)
     "silicon": 'index = "aSi_Pierce"\nhaze = { albedo = 0.1 }\n' + LOBE.format(m=500),
     "foil": "index = { n = 1.5, k = 0 }\nhaze = { share = 0.05 }\n" + LOBE.format(m=150),
 }
+MATERIAL_OF = {f"box_{name}": text for name, text in MATERIALS.items()}  # by its name in a scenario
 
 
 def names(is_grey):
@@ -23,7 +27,7 @@ def names(is_grey):
 
 
 def materials_in_toml():
-    return "".join(f"[material.box_{name}]\n{text}" for name, text in MATERIALS.items())
+    return "".join(f"[material.{name}]\n{text}" for name, text in MATERIAL_OF.items())
 
 
 def write_mesh(path):
@@ -56,6 +60,35 @@ def write_mesh(path):
     path.write_text("\n".join(lines) + "\n")
 
 
+def write_other_mesh(mesh, path, area_sd, normal_sd, rng):
+    """The mesh with facets that are apart, the area of each (in ln) and the components of its normal [rad] off by what is normal with these deviations."""
+    points, lines, count = [], [], 0
+    for line in mesh.read_text().splitlines():
+        words = line.split()
+        if words[0] == "v":
+            points.append([float(x) for x in words[1:]])
+        elif words[0] == "f":
+            corners = other_facet([points[int(k) - 1] for k in words[1:]], math.exp(area_sd * rng.gauss(0, 1)), [normal_sd * rng.gauss(0, 1) for _ in range(3)])
+            lines += ["v {:.9g} {:.9g} {:.9g}".format(*p) for p in corners]
+            lines.append("f " + " ".join(str(count + k + 1) for k in range(len(corners))))
+            count += len(corners)
+        else:
+            lines.append(line)
+    path.write_text("\n".join(lines) + "\n")
+
+
+def other_facet(corners, area, lean):
+    """Corners about their middle so that the area is so many times as large and `lean` is added to the normal."""
+    middle = [sum(p[k] for p in corners) / len(corners) for k in range(3)]
+    normal = unit(cross(*([b - a for a, b in zip(corners[0], end)] for end in corners[1:3])))
+    out = []
+    for p in corners:
+        arm = [math.sqrt(area) * (a - b) for a, b in zip(p, middle)]
+        along = dot(arm, lean) / (1 + dot(normal, lean))  # so that normal + lean is across all arms
+        out.append([m + a - along * n for m, a, n in zip(middle, arm, normal)])
+    return out
+
+
 def ring(axis, sign, others):
     """The four corners of a side, in turn."""
     for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
@@ -65,6 +98,5 @@ def ring(axis, sign, others):
 
 def outward(corners, points):
     p, q, r = (points[k - 1] for k in corners[:3])
-    u, v = ([b - a for a, b in zip(p, end)] for end in (q, r))
-    normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    return corners if sum(n * x for n, x in zip(normal, p)) > 0 else corners[::-1]
+    normal = cross(*([b - a for a, b in zip(p, end)] for end in (q, r)))
+    return corners if dot(normal, p) > 0 else corners[::-1]

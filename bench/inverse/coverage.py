@@ -102,7 +102,7 @@ def fit_options(floor, more):
 def told(parser):
     """The options, with what blind.py's functions ask for, and the folder to work in; what is not known here goes on to umov invert."""
     o, o.given = parser.parse_known_args()
-    o.rest, o.surfaces, o.wrong, o.truth = fit_options(o.floor, o.given), 1, 0, None
+    o.rest, o.surfaces, o.wrong, o.truth = fit_options(o.floor, o.given), 1, getattr(o, "wrong", 0), None
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     return o, work

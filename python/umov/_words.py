@@ -6,7 +6,7 @@ from typing import Any
 
 #: Options whose argument has another name than theirs with underscores for hyphens.
 _ARGUMENTS = {"alt": "alt_deg", "alternative": "alternatives", "phase": "phase_deg", "period": "period_s", "seeing": "seeing_arcsec",
-              "std": "standards", "temperature": "temperatures", "state": "laser", "masks": "mask_file", "visibility": "method"}
+              "std": "standards", "tilt-sd": "tilt_sd_deg", "temperature": "temperatures", "state": "laser", "masks": "mask_file", "visibility": "method"}
 #: The others. What is not here is none of ours: a name of a file may begin so.
 _SAME = frozenset((
     "accept allow-bad-checksum allow-old-elements aperture-fwhm band bands calibration candidates cells change-per-s clouds colour "

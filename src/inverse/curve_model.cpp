@@ -58,10 +58,14 @@ namespace {
 class Room {
 public:
   Room(std::size_t size, const std::vector<PartKind> &kinds) : width_(size), blocks_(1) {
-    for (const PartKind &kind : kinds)
+    std::size_t tilts = 0;
+    for (const PartKind &kind : kinds) {
       blocks_ += kind.blocks();
+      tilts += kind.tilt_sd_rad > 0 ? 3 : 0;
+    }
     for (auto *one : {&i_, &q_, &u_})
       one->resize(blocks_ * size);
+    tilted_.resize(tilts * size);
     const auto of = [&](const std::vector<double> &all, std::size_t block) {
       return std::span(all).subspan(block * size, size);
     };
@@ -72,6 +76,11 @@ public:
         part.smooth = of(i_, at + 1);
         part.rough = of(i_, at + 2);
       }
+      for (std::size_t axis = 0; axis < 3 && kind.tilt_sd_rad > 0; ++axis) {
+        part.tilted[axis] = of(tilted_, tilt_blocks_.size());
+        tilt_blocks_.push_back({at, axis});
+      }
+      part.tilts_with_last = kind.tilts_with_last;
       at += kind.blocks();
       parts_.push_back(part);
     }
@@ -91,6 +100,16 @@ public:
         width_[to] = is_lit && table.i_err.size() == table.i.size() ? table.i_err[from] : 0;
     }
   }
+  /// The same of a pose that is turned about an axis.
+  void take_tilted(const StokesTable &table, std::size_t pose, std::size_t axis, std::size_t column,
+                   std::size_t to) {
+    const std::size_t bands = table.bands / blocks_, size = width_.size();
+    for (std::size_t k = 0; k < tilt_blocks_.size(); ++k)
+      if (const auto [block, about] = tilt_blocks_[k]; about == axis) {
+        const double light = table.i[pose * table.bands + block * bands + column];
+        tilted_[k * size + to] = std::isfinite(light) ? light : 0;
+      }
+  }
   [[nodiscard]] ModelLight light() const {
     const std::size_t size = width_.size();
     return {std::span(i_).first(size), std::span(q_).first(size), std::span(u_).first(size), width_,
@@ -98,10 +117,35 @@ public:
   }
 
 private:
-  std::vector<double> i_, q_, u_, width_;
+  struct TiltBlock {
+    std::size_t block = 0, axis = 0;
+  };
+  std::vector<double> i_, q_, u_, width_, tilted_;
+  std::vector<TiltBlock> tilt_blocks_;
   std::vector<PartLight> parts_;
   std::size_t blocks_;
 };
+
+Vec3<Body> turned_back(const Vec3<Body> &v, std::size_t axis, double angle_rad) {
+  const Vec3<Body> about{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return normalized(v * c - cross(about, v) * s + about * (dot(about, v) * (1 - c)));
+}
+
+/// What all surfaces show that are turned about a body axis: the directions, turned back.
+Pose tilted(const Pose &pose, std::size_t axis, double angle_rad) {
+  // A turn as it is: the phase angle stays, and with it what is kept for it.
+  return {turned_back(pose.sun, axis, angle_rad), turned_back(pose.observer, axis, angle_rad),
+          pose.sun_radius_rad};
+}
+
+/// The largest of all parts, which share the turned poses; 0: all are aligned as the mesh says.
+double tilt_of(const std::vector<PartKind> &parts) {
+  double out = 0;
+  for (const PartKind &part : parts)
+    out = std::max(out, part.tilt_sd_rad);
+  return out;
+}
 
 } // namespace
 
@@ -110,18 +154,25 @@ bool CurveModel::for_each(std::span<const Turning> turnings, std::span<const std
                           const std::function<void(std::size_t, const ModelLight &)> &take) const {
   if (epochs.empty())
     epochs = all_;
+  const double tilt = tilt_of(parts_);
+  const std::size_t ways = tilt > 0 ? 4 : 1; // as it is, and turned about three axes
   const std::size_t bands = column_.size(), per = epochs.size();
   constexpr std::size_t poses_at_once = 1u << 16; // some megabytes of light
-  const std::size_t block = std::max<std::size_t>(1, poses_at_once / std::max<std::size_t>(per, 1));
+  const std::size_t block =
+      std::max<std::size_t>(1, poses_at_once / std::max<std::size_t>(per * ways, 1));
   StokesTable table;
   std::vector<Pose> poses;
   for (std::size_t begin = 0; begin < turnings.size(); begin += block) {
     const std::size_t count = std::min(block, turnings.size() - begin);
-    poses.resize(count * per);
+    poses.resize(count * per * ways);
     parallel_for(count, threads, [&](std::size_t k) {
       const Motion motion(turnings[begin + k]);
-      for (std::size_t e = 0; e < per; ++e)
-        poses[k * per + e] = motion.at(curve_.epochs[epochs[e]]);
+      for (std::size_t e = 0; e < per; ++e) {
+        const Pose pose = motion.at(curve_.epochs[epochs[e]]);
+        poses[(k * per + e) * ways] = pose;
+        for (std::size_t way = 1; way < ways; ++way)
+          poses[(k * per + e) * ways + way] = tilted(pose, way - 1, tilt);
+      }
     });
     if (!light_(poses, table))
       return false;
@@ -133,8 +184,12 @@ bool CurveModel::for_each(std::span<const Turning> turnings, std::span<const std
       Room room(size, parts_);
       for (std::size_t k = c * chunk; k < std::min(count, (c + 1) * chunk); ++k) {
         for (std::size_t e = 0; e < per; ++e)
-          for (std::size_t b = 0; b < bands; ++b)
-            room.take(table, k * per + e, column_[b], epochs[e] * bands + b);
+          for (std::size_t b = 0; b < bands; ++b) {
+            const std::size_t row = (k * per + e) * ways, to = epochs[e] * bands + b;
+            room.take(table, row, column_[b], to);
+            for (std::size_t way = 1; way < ways; ++way)
+              room.take_tilted(table, row + way, way - 1, column_[b], to);
+          }
         take(begin + k, room.light());
       }
     });

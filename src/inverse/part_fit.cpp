@@ -15,8 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// One fit. Unknowns are in units of their standard deviations: first ln of the amounts of all
-/// parts, then ln of the slopes of those that have some.
+/// One fit. Unknowns are those of PartMix.
 class PartFit {
 public:
   PartFit(const CurveLikelihood &likelihood, const ModelLight &model);
@@ -162,27 +161,34 @@ void PartFit::jacobian() {
     const std::size_t cell = of_.rows_[ratios_[j]].at;
     all[j] = std::max(mix_.i()[cell], 1e-9 * model_.i[cell]);
   }
-  for (std::size_t n = 0; n < mix_.unknowns().size(); ++n) {
-    const auto &[number, is_slope] = mix_.unknowns()[n];
+  // What a part adds to a column, by the derivative of the factor of its light.
+  const auto add = [&](std::size_t number, double *column, auto bend) {
     const PartLight &part = model_.parts[number];
     const double *const factor = &mix_.factor()[number * cells_];
-    const double *const by_slope = &mix_.by_slope()[number * cells_];
-    // Derivative of the factor of the part.
-    const auto change = [&, is_slope = is_slope](std::size_t cell) {
-      return factor[cell] * (is_slope ? by_slope[cell] : part.sd);
-    };
-    double *const column = jacobian_.col(static_cast<Index>(n)).data();
     const double *const own = linear_parts_.col(static_cast<Index>(number)).data();
-    for (std::size_t k = 0; k < linear_.size(); ++k)
-      column[k] = by_light[k] * change(linear_[k].at) * own[k];
+    for (std::size_t k = 0; k < linear_.size(); ++k) {
+      const std::size_t cell = linear_[k].at;
+      column[k] += by_light[k] * factor[cell] * bend(cell) * own[k];
+    }
     for (std::size_t j = 0; j < ratios_.size(); ++j) {
       const auto &row = of_.rows_[ratios_[j]];
-      const double more = change(row.at) / all[j];
+      const double more = factor[row.at] * bend(row.at) / all[j];
       const double dq = -more * (part.q[row.at] - mix_.q()[row.at] / all[j] * part.i[row.at]);
       const double du = -more * (part.u[row.at] - mix_.u()[row.at] / all[j] * part.i[row.at]);
       const std::size_t at = linear_.size() + 2 * j;
-      column[at] = root_[at] * row.l_qq * dq;
-      column[at + 1] = root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
+      column[at] += root_[at] * row.l_qq * dq;
+      column[at + 1] += root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
+    }
+  };
+  jacobian_.setZero();
+  for (std::size_t n = 0; n < mix_.unknowns().size(); ++n) {
+    const PartMix::Unknown &unknown = mix_.unknowns()[n];
+    double *const column = jacobian_.col(static_cast<Index>(n)).data();
+    if (unknown.bends == 0)
+      add(unknown.part, column, [&](std::size_t) { return model_.parts[unknown.part].sd; });
+    for (std::size_t b = unknown.first; b < unknown.first + unknown.bends; ++b) {
+      const double *const bend = &mix_.bend()[b * cells_];
+      add(mix_.bent()[b], column, [&](std::size_t cell) { return bend[cell]; });
     }
   }
 }

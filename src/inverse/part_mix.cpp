@@ -8,62 +8,109 @@ namespace umov::inverse {
 PartMix::PartMix(const ModelLight &model)
     : model_(model), cells_(model.i.size()), i_(model.i.begin(), model.i.end()),
       q_(model.q.begin(), model.q.end()), u_(model.u.begin(), model.u.end()) {
-  for (std::size_t p = 0; p < model.parts.size(); ++p)
-    if (model.parts[p].sd > 0)
-      unknowns_.push_back({p, false});
-  for (std::size_t p = 0; p < model.parts.size(); ++p)
-    if (!model.parts[p].smooth.empty())
-      unknowns_.push_back({p, true});
   for (std::size_t k = 0; k < cells_; ++k)
     if (model.i[k] > 0)
       lit_.push_back(k);
-  put_slopes();
+  factor_.assign(model.parts.size() * cells_, 1);
+  name_unknowns();
+  bend_.assign(first_.size(), 0);
 }
 
-/// Far from a lobe's middle its light goes with a power of e of the slope, and near it nearly so.
-void PartMix::put_slopes() {
-  const std::size_t size = model_.parts.size() * cells_;
-  first_.assign(size, 0);
-  second_.assign(size, 0);
-  factor_.assign(size, 1);
-  by_slope_.assign(size, 0);
-  for (const Unknown &unknown : unknowns_) {
-    const PartLight &part = model_.parts[unknown.part];
-    if (!unknown.is_slope)
-      continue;
-    for (const std::size_t k : lit_) {
-      constexpr double dark = 1e-6; // of all light: whatever it becomes is not seen
-      const double least = dark * model_.i[k];
-      if (!(std::max({part.i[k], part.smooth[k], part.rough[k]}) > least))
+void PartMix::name_unknowns() {
+  const std::size_t parts = model_.parts.size();
+  for (std::size_t p = 0; p < parts; ++p)
+    if (model_.parts[p].sd > 0)
+      unknowns_.push_back({p});
+  for (std::size_t p = 0; p < parts; ++p)
+    if (!model_.parts[p].smooth.empty()) {
+      unknowns_.push_back({p, bent_.size(), 1});
+      put_slopes(p);
+    }
+  for (std::size_t p = 0; p < parts; ++p) {
+    std::size_t behind = p + 1; // surfaces that are turned together
+    while (behind < parts && model_.parts[behind].tilts_with_last)
+      ++behind;
+    for (std::size_t axis = 0; axis < 3 && !(p > 0 && model_.parts[p].tilts_with_last); ++axis) {
+      if (model_.parts[p].tilted[axis].empty())
         continue;
-      const double less = std::log((part.smooth[k] + least) / (part.i[k] + least));
-      const double more = std::log((part.rough[k] + least) / (part.i[k] + least));
-      first_[unknown.part * cells_ + k] = (more - less) / 2;
-      second_[unknown.part * cells_ + k] = (more + less) / 2;
+      unknowns_.push_back({p, bent_.size(), behind - p});
+      for (std::size_t one = p; one < behind; ++one)
+        put_tilt(one, axis);
     }
   }
 }
 
-void PartMix::set(std::span<const double> off) {
-  const std::size_t parts = model_.parts.size();
-  std::vector<double> amount(parts, 1), slope(parts, 0);
-  for (std::size_t k = 0; k < unknowns_.size(); ++k) {
-    const std::size_t p = unknowns_[k].part;
-    (unknowns_[k].is_slope ? slope[p] : amount[p]) =
-        unknowns_[k].is_slope ? off[k] : std::exp(model_.parts[p].sd * off[k]);
+namespace {
+
+constexpr double dark = 1e-6; // of all light: whatever it becomes is not seen
+
+} // namespace
+
+void PartMix::add_bend(std::size_t part) {
+  bent_.push_back(part);
+  first_.resize(bent_.size() * cells_, 0);
+  second_.resize(bent_.size() * cells_, 0);
+}
+
+/// Far from a lobe's middle its light goes with a power of e of the slope, and near it nearly so.
+void PartMix::put_slopes(std::size_t part) {
+  const std::size_t begin = bent_.size() * cells_;
+  add_bend(part);
+  const PartLight &own = model_.parts[part];
+  for (const std::size_t k : lit_) {
+    const double least = dark * model_.i[k];
+    if (!(std::max({own.i[k], own.smooth[k], own.rough[k]}) > least))
+      continue;
+    const double less = std::log((own.smooth[k] + least) / (own.i[k] + least));
+    const double more = std::log((own.rough[k] + least) / (own.i[k] + least));
+    first_[begin + k] = (more - less) / 2;
+    second_[begin + k] = (more + less) / 2;
   }
+}
+
+/// With a turn it goes nearly as its first derivative says: a step to one side tells that.
+void PartMix::put_tilt(std::size_t part, std::size_t axis) {
+  const std::size_t begin = bent_.size() * cells_;
+  add_bend(part);
+  const PartLight &own = model_.parts[part];
+  for (const std::size_t k : lit_) {
+    const double least = dark * model_.i[k], tilted = own.tilted[axis][k];
+    if (std::max(own.i[k], tilted) > least)
+      first_[begin + k] = std::log((tilted + least) / (own.i[k] + least));
+  }
+}
+
+void PartMix::set(std::span<const double> off) {
+  constexpr double most = 5; // e-folds: beyond, light nearby says nothing
+  const std::size_t parts = model_.parts.size();
+  power_.assign(parts * cells_, 0);
+  std::vector<double> amount(parts, 1);
+  for (std::size_t n = 0; n < unknowns_.size(); ++n) {
+    const auto [part, first, bends] = unknowns_[n];
+    const double y = off[n];
+    if (bends == 0)
+      amount[part] = std::exp(model_.parts[part].sd * y);
+    for (std::size_t b = first; b < first + bends; ++b)
+      for (const std::size_t k : lit_) {
+        const std::size_t at = b * cells_ + k;
+        power_[bent_[b] * cells_ + k] += y * (first_[at] + y * second_[at]);
+        bend_[at] = first_[at] + 2 * y * second_[at];
+      }
+  }
+  for (std::size_t b = 0; b < bent_.size(); ++b)
+    for (const std::size_t k : lit_)
+      if (!(std::abs(power_[bent_[b] * cells_ + k]) < most))
+        bend_[b * cells_ + k] = 0;
   std::ranges::copy(model_.i, i_.begin());
   std::ranges::copy(model_.q, q_.begin());
   std::ranges::copy(model_.u, u_.begin());
-  constexpr double most = 5; // e-folds: beyond, three roughnesses say nothing
   for (std::size_t p = 0; p < parts; ++p) {
     const PartLight &part = model_.parts[p];
     for (const std::size_t k : lit_) {
-      const std::size_t at = p * cells_ + k;
-      const double y = slope[p], power = y * (first_[at] + y * second_[at]);
-      by_slope_[at] = std::abs(power) < most ? first_[at] + 2 * y * second_[at] : 0;
-      factor_[at] = amount[p] * (power == 0 ? 1 : std::exp(std::clamp(power, -most, most)));
-      const double more = factor_[at] - 1;
+      const double power = power_[p * cells_ + k];
+      double &factor = factor_[p * cells_ + k];
+      factor = amount[p] * (power == 0 ? 1 : std::exp(std::clamp(power, -most, most)));
+      const double more = factor - 1;
       i_[k] += more * part.i[k];
       q_[k] += more * part.q[k];
       u_[k] += more * part.u[k];

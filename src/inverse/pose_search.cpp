@@ -96,11 +96,15 @@ bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
              modes, [](const PoseMode &m) { return m.weight > 0.01 && m.sd_rad() > widest; });
 }
 
+/// Fits that are taken to the end, of one place in fifty of the first.
+constexpr std::size_t last_fits = 24;
+
 /// How the last fits are run. Glints hold two directions a hundred times better than the third:
 /// along such a valley, which bends, a dozen steps reach nothing.
-inverse::FitPlan last_steps(Freedom freedom, const SearchOptions &options) {
+inverse::FitPlan last_steps(Freedom freedom, const SearchOptions &options,
+                            std::size_t kept = last_fits) {
   const bool has_rate = freedom == Freedom::AttitudeAndRate; // attitudes alone are lit quickly
-  return {freedom, 200, 12, 24, 1e-3, options.threads, has_rate};
+  return {freedom, 200, 12, kept, 1e-3, options.threads, has_rate};
 }
 
 /// Peaks, and samples drawn from them.
@@ -325,16 +329,15 @@ private:
 
 /// The last steps, until the errors that they leave are those that they were taken with.
 Result<std::vector<TurningFit>> settled_fits(const CurveModel &model, std::vector<Turning> from,
-                                             Freedom freedom, FoundErrors &errors,
+                                             Freedom freedom, std::size_t kept, FoundErrors &errors,
                                              const SearchOptions &options) {
   constexpr int rounds = 3;
   for (int round = 0;; ++round) {
-    auto fits =
-        inverse::fit_turnings(model, errors.likelihood(), from, {}, last_steps(freedom, options));
+    auto fits = inverse::fit_turnings(model, errors.likelihood(), from, {},
+                                      last_steps(freedom, options, kept));
     if (fits.empty())
       return tl::unexpected(stopped());
-    constexpr std::size_t most = 24;
-    from = inverse::turnings_of(fits, most);
+    from = inverse::turnings_of(fits, kept);
     bool has_changed = false;
     if (round + 1 == rounds)
       return fits;
@@ -367,7 +370,7 @@ void tell_refined(const SearchOptions &options, std::size_t done) {
 /// model that is wrong by more than that it does not: each round has places of its own. Empty if it
 /// was stopped.
 std::vector<Turning> cooled_places(const CurveModel &model, const std::vector<Turning> &sorted,
-                                   const SearchOptions &options) {
+                                   std::size_t times, const SearchOptions &options) {
   struct Round {
     double floor; ///< of I, that is forgiven
     std::size_t epochs;
@@ -375,7 +378,6 @@ std::vector<Turning> cooled_places(const CurveModel &model, const std::vector<Tu
     std::size_t places, left; ///< fits, best first, that are kept and that go on
   };
   constexpr Round rounds[] = {{0.25, 20, 3, 80, 600}, {0.08, 60, 4, 60, 0}};
-  const std::size_t times = times_of(model.curve());
   std::vector<Turning> out;
   auto from = inverse::spread_out(sorted, options.starts * times, 5 * degree);
   for (const Round &round : rounds) {
@@ -394,33 +396,24 @@ std::vector<Turning> cooled_places(const CurveModel &model, const std::vector<Tu
   return out;
 }
 
-/// Fixed attitudes that are worth a fit, and those of the grid that they were found by, best first.
-struct Places {
-  std::vector<Turning> judged, best;
-};
-
-Result<Places> find_places(const SearchModels &models, FoundErrors &errors,
-                           const SearchOptions &options) {
-  const auto &[model, first, quick] = models;
-  if (errors.likelihood().measurements() == 0)
-    return fail(ErrorCode::BadInput,
-                "nothing was measured: no row has light with an error or above 0, nor q and u");
-  UMOV_ASSIGN(left, search_grid(quick, options));
+/// Fixed attitudes that are worth a fit, of those that were judged best.
+Result<std::vector<Turning>> find_places(const SearchModels &models,
+                                         const std::vector<Turning> &judged, std::size_t times,
+                                         FoundErrors &errors, const SearchOptions &options) {
   tell_refined(options, 0);
-  auto best = cooled_places(quick, left, options);
-  Places out{std::move(left), std::move(best)};
+  auto out = cooled_places(models.quick, judged, times, options);
   bool has_changed = false;
-  if (out.best.empty() || !errors.ask(out.best, has_changed))
+  if (out.empty() || !errors.ask(out, has_changed))
     return tl::unexpected(stopped());
-  return std::move(out);
+  return out;
 }
 
-/// Fits that have come to rest, best first.
+/// Fits that have come to rest, best first; `kept` go to the end.
 Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
-                                           const std::vector<Turning> &places, FoundErrors &errors,
-                                           const SearchOptions &options) {
+                                           const std::vector<Turning> &places, std::size_t kept,
+                                           FoundErrors &errors, const SearchOptions &options) {
   const inverse::FitPlan first_steps{Freedom::Attitude, 12, 0, 0, 1e-3, options.threads};
-  const std::size_t most = 24 * times_of(models.last.curve());
+  const std::size_t most = std::max(kept, last_fits * times_of(models.last.curve()));
   tell_refined(options, 1);
   const auto fits =
       inverse::fit_turnings(models.first, errors.likelihood(), places, {}, first_steps);
@@ -429,7 +422,42 @@ Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
   if (fits.empty() || !errors.ask(from, has_changed))
     return tl::unexpected(stopped());
   tell_refined(options, 2);
-  return settled_fits(models.last, from, Freedom::Attitude, errors, options);
+  return settled_fits(models.last, from, Freedom::Attitude, kept, errors, options);
+}
+
+/// Why nothing can be fitted, if that is so.
+Result<void> needs_measurements(const CurveLikelihood &likelihood) {
+  if (likelihood.measurements() == 0)
+    return fail(ErrorCode::BadInput,
+                "nothing was measured: no row has light with an error or above 0, nor q and u");
+  return {};
+}
+
+/// Modes that explain the data nearly as well as the best: where these are many, more were passed
+/// by.
+bool are_many(const std::vector<TurningFit> &fits, const ObservedCurve &curve) {
+  constexpr double near = 20; // in chi-square
+  constexpr std::ptrdiff_t many = 10;
+  const auto modes = inverse::modes_of(fits, inverse::span_of(curve));
+  const double best = std::ranges::min(modes, {}, &PoseMode::chi2).chi2;
+  return std::ranges::count_if(
+             modes, [&](const PoseMode &mode) { return mode.chi2 < best + near; }) >= many;
+}
+
+/// Fits of all attitudes. Light that leaves many of them alike is asked for more of them.
+Result<std::vector<TurningFit>> fits_of_all(const SearchModels &models,
+                                            const std::vector<Turning> &judged, FoundErrors &errors,
+                                            const SearchOptions &options) {
+  constexpr std::size_t more = 4, most = 8; // of fits; of places
+  const ObservedCurve &curve = models.last.curve();
+  const std::size_t times = times_of(curve);
+  UMOV_ASSIGN(places, find_places(models, judged, times, errors, options));
+  UMOV_ASSIGN(fits, fit_places(models, places, last_fits, errors, options));
+  if (!are_many(fits, curve))
+    return std::move(fits);
+  UMOV_ASSIGN(more_places,
+              find_places(models, judged, std::min(more * times, most), errors, options));
+  return fit_places(models, more_places, more * last_fits, errors, options);
 }
 
 /// Chi-square of the best of some places after a few steps on few epochs, as of all epochs; where
@@ -457,10 +485,12 @@ double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> 
 Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options) {
   const auto &[model, first, quick] = models;
   FoundErrors errors(model, options);
-  UMOV_ASSIGN(places, find_places(models, errors, options));
-  UMOV_ASSIGN(fits, fit_places(models, places.best, errors, options));
+  if (auto enough = needs_measurements(errors.likelihood()); !enough)
+    return tl::unexpected(enough.error());
+  UMOV_ASSIGN(judged, search_grid(quick, options));
+  UMOV_ASSIGN(fits, fits_of_all(models, judged, errors, options));
   UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), fits, Freedom::Attitude,
-                             {places.judged, options.grid}, options));
+                             {judged, options.grid}, options));
   out.share_of_so3 = inverse::share_of(out.set95);
   errors.tell(out);
   if (&quick != &first && &quick != &model)
@@ -471,16 +501,19 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
 
 Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options) {
   FoundErrors errors(models.last, options);
-  UMOV_ASSIGN(places, find_places(models, errors, options));
+  if (auto enough = needs_measurements(errors.likelihood()); !enough)
+    return tl::unexpected(enough.error());
+  UMOV_ASSIGN(judged, search_grid(models.quick, options));
+  UMOV_ASSIGN(places, find_places(models, judged, times_of(models.last.curve()), errors, options));
   // Ten standard deviations in each measurement: no further step makes an explanation of that.
   const double far = 100 * static_cast<double>(errors.likelihood().measurements());
   const double seen =
-      chi2_after_few_steps(models.first, places.best, errors.likelihood(), far, options.threads);
+      chi2_after_few_steps(models.first, places, errors.likelihood(), far, options.threads);
   if (seen < 0)
     return tl::unexpected(stopped());
   if (seen > far)
     return seen;
-  UMOV_ASSIGN(fits, fit_places(models, places.best, errors, options));
+  UMOV_ASSIGN(fits, fit_places(models, places, last_fits, errors, options));
   return fits.front().at.chi2;
 }
 
@@ -514,7 +547,8 @@ Result<PoseAnswer> refine_spin(const CurveModel &model, const CurveModel &first,
                                    {starts.begin(), starts.end()}, options.threads);
   if (likely.empty() || !errors.ask(likely, has_changed))
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(fits, settled_fits(model, likely, Freedom::AttitudeAndRate, errors, options));
+  UMOV_ASSIGN(fits,
+              settled_fits(model, likely, Freedom::AttitudeAndRate, last_fits, errors, options));
   UMOV_ASSIGN(out, answer_of(model, model, errors.likelihood(), fits, Freedom::AttitudeAndRate, {},
                              options));
   errors.tell(out);

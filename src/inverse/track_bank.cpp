@@ -44,8 +44,7 @@ TrackMode track_mode(const Turning &turning, const std::vector<double> &covarian
   const std::size_t gains = errors.has_clouds ? 1 : bands;
   out.nuisances.assign(gains, out.scale);
   for (const PartKind &part : parts)
-    out.nuisances.insert(out.nuisances.end(),
-                         (part.sd > 0 ? 1u : 0u) + (part.slope_sd > 0 ? 1u : 0u), 0.0);
+    out.nuisances.insert(out.nuisances.end(), part.unknowns(), 0.0);
   const auto n = static_cast<Index>(inverse::nuisances_at + out.nuisances.size());
   MatrixXd all = MatrixXd::Identity(n, n); // of parts: in units of their priors
   all.topLeftCorner<6, 6>() = Eigen::Map<const MatrixXd>(covariance.data(), 6, 6);

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <umov/core/quantity.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 
@@ -65,14 +66,18 @@ namespace {
 
 /// Parts of the light as unknowns, in the order of CurveLikelihood::FittedLight::off.
 void add_parts(const std::vector<PartKind> &parts, const BestLight &best, Judgement &out) {
-  const auto add = [&](const std::string &name, double sd) {
+  const auto add = [&](const std::string &name, double sd, const char *unit = "ln") {
     if (sd > 0)
-      out.nuisances.push_back({name, "ln", -10, 10, Prior::Normal, 0, sd});
+      out.nuisances.push_back({name, unit, -10, 10, Prior::Normal, 0, sd});
   };
   for (const PartKind &part : parts)
     add("amount of the " + part.name, part.sd);
   for (const PartKind &part : parts)
     add("slopes of the " + part.name, part.slope_sd);
+  for (const PartKind &part : parts)
+    for (const char axis : {'X', 'Y', 'Z'})
+      add(fmt::format("tilt of the {} about +{}", part.name, axis),
+          part.tilts_with_last ? 0 : part.tilt_sd_rad * 180 / pi, "deg");
   out.fitted = best.parts;
 }
 
@@ -244,10 +249,10 @@ std::string axes_words(const Judgement &judgement) {
 /// What no chi-square tells: lobes that are a fifth off are fitted well by an attitude beside.
 std::string what_it_rests_on(const Judgement &judgement) {
   const bool is_by_part = !judgement.fitted.empty();
-  std::string out = is_by_part
-                        ? "- this holds for materials that are right to --slope-sd, "
-                          "--reflectance-sd and --haze-sd, and for a shape that is right to --floor"
-                        : "- this holds for materials and a shape that are right to --floor";
+  std::string out = is_by_part ? "- this holds for materials that are right to --slope-sd, "
+                                 "--reflectance-sd and --haze-sd, for surfaces that are aligned to "
+                                 "--tilt-sd, and for a shape that is right to --floor"
+                               : "- this holds for materials and a shape that are right to --floor";
   if (judgement.light_between.value_or(0) > 0)
     out += fmt::format(
         "; light from surface to surface, {:.2g} of I in the median, {}", *judgement.light_between,

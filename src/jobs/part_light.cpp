@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/parallel.h>
+#include <umov/core/quantity.h>
 
 namespace umov::jobs {
 namespace {
@@ -81,23 +82,31 @@ bool LightByPart::name_parts(const AbundanceTable &sums, const MaterialErrors &e
     auto &[lobe, rest] = found[material_of(scene, sums.columns[k]).name];
     (sums.columns[k].kind == AbundanceColumn::Kind::Specular ? lobe : rest).push_back(k);
   }
-  const auto add = [&](const std::string &name, Columns columns, double sd, double slope_sd) {
-    if (columns.empty() || !(sd > 0 || slope_sd > 0))
+  const auto add = [&](const std::string &name, Columns columns, PartKind kind) {
+    kind.name = name;
+    if (columns.empty() || (kind.unknowns() == 0 && !(kind.tilt_sd_rad > 0)))
       return;
-    kinds_.push_back({name, sd, slope_sd});
+    kinds_.push_back(std::move(kind));
     columns_.push_back(std::move(columns));
     blocks_ += kinds_.back().blocks();
+  };
+  const double tilt = errors.tilt_deg * pi / 180;
+  const PartKind of_lobe{"", errors.reflectance, errors.slope, tilt};
+  // What a surface scatters is turned with its lobe.
+  const auto beside = [&](const Columns &lobe, double sd) {
+    return PartKind{"", sd, 0, tilt, !lobe.empty() && of_lobe.unknowns() > 0};
   };
   for (const Surface &surface : scene.front)
     if (const auto one = found.extract(surface.material().name); !one.empty()) {
       const bool has_body = surface.material().body.has_value();
-      add("lobe of " + one.key(), one.mapped().first, errors.reflectance, errors.slope);
+      add("lobe of " + one.key(), one.mapped().first, of_lobe);
       add((has_body ? "body of " : "haze of ") + one.key(), one.mapped().second,
-          has_body ? errors.reflectance : errors.haze, 0);
+          beside(one.mapped().first, has_body ? errors.reflectance : errors.haze));
     }
   for (const auto &[name, parts] : found) {
-    add("lobe of " + name, parts.first, errors.reflectance, errors.slope);
-    add("rest of " + name, parts.second, std::max(errors.reflectance, errors.haze), 0);
+    add("lobe of " + name, parts.first, of_lobe);
+    add("rest of " + name, parts.second,
+        beside(parts.first, std::max(errors.reflectance, errors.haze)));
   }
   return !kinds_.empty();
 }

@@ -105,7 +105,7 @@ std::string flaw_of(const TrackMode &mode, const TrackFrame &frame) {
   constexpr double fastest_rad_s = 1000, of_length = 1e-6, rounding = 1e-3;
   std::size_t count = frame.errors.has_clouds ? 1 : frame.bands.size();
   for (const PartKind &part : frame.parts)
-    count += (part.sd > 0 ? 1u : 0u) + (part.slope_sd > 0 ? 1u : 0u);
+    count += part.unknowns();
   const std::size_t n = 6 + count;
   if (mode.nuisances.size() != count || mode.covariance.size() != n * n)
     return fmt::format("{} nuisances and a covariance of {} numbers, where {} and {} were expected",

@@ -2,6 +2,7 @@
 // How likely measured I, q and u are if the object gives a certain light: docs/theory/inverse.md,
 // section 2.
 
+#include <array>
 #include <memory>
 #include <span>
 #include <umov/inverse/observed_curve.h>
@@ -48,13 +49,21 @@ inline constexpr double best_relative = 1e-4;
 /// 1931).
 double chi2_probability(double chi2, double dof);
 
-/// A part of a body's light whose amount is not quite known, nor how rough the surface is.
+/// A part of a body's light whose amount is not quite known, nor how rough the surface is, nor how
+/// it is aligned to the body.
 struct PartKind {
   std::string name;
-  double sd = 0;       ///< of ln of its amount
-  double slope_sd = 0; ///< of ln of the slopes of its lobe; 0: it has none, or they are known
+  double sd = 0;          ///< of ln of its amount
+  double slope_sd = 0;    ///< of ln of the slopes of its lobe; 0: it has none, or they are known
+  double tilt_sd_rad = 0; ///< of its turn about each body axis; 0: it is aligned as the mesh says
+  bool tilts_with_last = false; ///< it is turned as the part before it, of the same surfaces
   /// Of a PoseLighting: its light, and that of smaller and of larger slopes.
   [[nodiscard]] std::size_t blocks() const { return slope_sd > 0 ? 3 : 1; }
+  /// Numbers that are not known.
+  [[nodiscard]] std::size_t unknowns() const {
+    return (sd > 0 ? 1u : 0u) + (slope_sd > 0 ? 1u : 0u) +
+           (tilt_sd_rad > 0 && !tilts_with_last ? 3u : 0u);
+  }
 };
 /// Light of one part as the model has it: [epoch * bands + band].
 struct PartLight {
@@ -62,6 +71,9 @@ struct PartLight {
   /// `i` with slopes one standard deviation smaller and larger; empty: they are known.
   std::span<const double> smooth, rough = {};
   double sd = 0; ///< of ln of its amount
+  /// `i` turned by one standard deviation about each body axis; empty: it is aligned as it is.
+  std::array<std::span<const double>, 3> tilted = {};
+  bool tilts_with_last = false; ///< as PartKind has it
 };
 
 /// Light of a model at all epochs and bands: [epoch * bands + band], scattering plane.

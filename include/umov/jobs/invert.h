@@ -15,13 +15,17 @@
 
 namespace umov::jobs {
 
-/// How well the materials of an object are known, as standard deviations of logarithms; 0: exactly.
+/// How well the materials of an object are known, as standard deviations of logarithms, and how
+/// well their surfaces are aligned; 0: exactly.
 struct MaterialErrors {
   double slope = 0.2;       ///< of the slopes of each lobe
   double reflectance = 0.1; ///< of what a lobe and a body reflect
   double haze = 0.3;        ///< of what a material without a body scatters beside its lobe
+  double tilt_deg = 0;      ///< of a turn of all its surfaces about each body axis
   /// Any of them is not known.
-  [[nodiscard]] bool is_any() const { return slope > 0 || reflectance > 0 || haze > 0; }
+  [[nodiscard]] bool is_any() const {
+    return slope > 0 || reflectance > 0 || haze > 0 || tilt_deg > 0;
+  }
 };
 
 /// What is asked of the observations.

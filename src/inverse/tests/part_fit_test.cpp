@@ -65,6 +65,21 @@ TEST(PartFit, FindsWhatALobeIsOff) {
   EXPECT_NEAR(found.off[1], -0.7, 0.1);
 }
 
+// ln of a Gaussian lobe goes with its place all but linearly; the rest of the light, which moved
+// along, is .01 off, a tenth of a standard deviation of the amount.
+TEST(PartFit, FindsHowFarALobeIsTurned) {
+  constexpr double sd = 0.1, off = 0.13; // of the lobe's place
+  const Toy toy, tilted(sd);
+  const CurveLikelihood likelihood(Toy(off).seen(0, 0), no_floor());
+  PartLight lobe{toy.lobe, toy.q, toy.none, {}, {}, 0.1};
+  lobe.tilted[1] = tilted.lobe;
+  const PartLight parts[] = {lobe};
+  const auto found = likelihood.fit_parts({toy.all, toy.q, toy.none, {}, parts});
+  ASSERT_EQ(found.off.size(), 2u); // its amount, and a turn about one axis
+  EXPECT_NEAR(found.off[0], 0, 0.4);
+  EXPECT_NEAR(found.off[1], off / sd, 0.15);
+}
+
 TEST(PartFit, FindsWhatALobeIsOffBesideNumbersThatAreWrong) {
   const Toy toy;
   ObservedCurve seen = toy.seen(1.4, -0.7);
@@ -190,8 +205,9 @@ class PartedBox {
 public:
   std::array<double, 6> colour_off{}; ///< ln
   double lobe_off = 0, slope_off = 0;
-  static std::vector<PartKind> kinds() {
-    std::vector<PartKind> out{{"lobe", 0.1, 0.2}};
+  Vec3<Body> tilt_rad{0, 0, 0}; ///< how the lobes' surfaces are turned in the body
+  static std::vector<PartKind> kinds(double tilt_sd_rad = 0) {
+    std::vector<PartKind> out{{"lobe", 0.1, 0.2, tilt_sd_rad}};
     for (int f = 0; f < 6; ++f)
       out.push_back({"face", 0.1, 0});
     return out;
@@ -227,8 +243,8 @@ private:
       for (std::size_t level = 0; level < 3 && s > 0 && o > 0; ++level) {
         const double steps[] = {0, -0.2, 0.2}; // of ln of the slopes
         const double m = 20 * std::exp(-2 * (slope_off + steps[level]));
-        light[1 + level] +=
-            (m + 2) / 22 * std::exp(lobe_off) * std::pow(std::max(0.0, dot(normals[f], half)), m);
+        const double cosine = dot(normalized(normals[f] + cross(tilt_rad, normals[f])), half);
+        light[1 + level] += (m + 2) / 22 * std::exp(lobe_off) * std::pow(std::max(0.0, cosine), m);
       }
     }
     light[0] += light[1];
@@ -261,6 +277,64 @@ TEST(PartFit, ASetHoldsTheTruthWhereTheMaterialsAreOthers) {
   }
   EXPECT_GE(in, 10u); // of 95 % one in a hundred times less
   EXPECT_LE(in_without, 6u);
+}
+
+TEST(PartFit, ASetHoldsTheTruthWhereSurfacesAreTurned) {
+  constexpr double sd = 0.06; // rad; lobes are .2 wide
+  const PartedBox model;
+  SearchOptions options = small();
+  options.errors.floor = 0.005;
+  std::size_t in = 0, in_without = 0;
+  constexpr std::uint64_t trials = 6;
+  for (std::uint64_t t = 0; t < trials; ++t) {
+    PartedBox truth;
+    truth.tilt_rad = {sd * noise(300 + t, 0), sd * noise(300 + t, 1), sd * noise(300 + t, 2)};
+    const Quaternion at = turned(turned({}, {0.9 * static_cast<double>(t), 0, 0}),
+                                 {0, 0.5 * static_cast<double>(t), 0.3});
+    ObservedCurve curve = pass(24);
+    observe(curve, truth.lighting(false), {at, {}}, 100, t);
+    const CurveModel whole(curve, model.lighting(false), {0, 1});
+    const CurveModel turnable(curve, model.lighting(true), {0, 1}, PartedBox::kinds(sd));
+    const auto answer = search_pose({turnable, turnable, whole}, options);
+    const auto without = search_pose(whole, options);
+    ASSERT_TRUE(answer && without);
+    in += is_in(answer->set95, at) ? 1 : 0;
+    in_without += is_in(without->set95, at) ? 1 : 0;
+  }
+  EXPECT_GE(in, 5u); // of 95 % one in thirty times less
+  EXPECT_LE(in_without, 3u);
+}
+
+// Directions of a body that is turned by quaternions, against what the model makes of turned parts.
+TEST(CurveModel, TurnedSurfacesShowTheLightOfATurnedBody) {
+  constexpr double sd = 0.03;
+  const auto light_of = [](const Pose &p) {
+    return std::exp(p.sun.x + 2 * p.sun.y - p.observer.z + p.observer.x * p.sun.z);
+  };
+  const PoseLighting light = [&](std::span<const Pose> poses, StokesTable &out) {
+    out.resize(poses.size(), 4); // two bands of all, two of a part
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      for (std::size_t b = 0; b < 4; ++b)
+        out.put(k, b, {{(b < 2 ? 3 : 1) * light_of(poses[k]), 0, 0, 0}, {}});
+    return true;
+  };
+  const ObservedCurve curve = pass(7);
+  const CurveModel model(curve, light, {0, 1}, {{"part", 0.1, 0, sd}});
+  const Turning at{turned(turned({}, {0.4, 0, 0}), {0, -1.1, 0.3}), {0.001, 0.002, -0.003}};
+  std::size_t compared = 0;
+  const Turning some[] = {at};
+  ASSERT_TRUE(model.for_each(some, {}, 1, [&](std::size_t, const ModelLight &found) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t e = 0; e < curve.epochs.size(); ++e) {
+        const Vec3<Body> by{axis == 0 ? sd : 0, axis == 1 ? sd : 0, axis == 2 ? sd : 0};
+        const Quaternion then = turned(attitude_at(at, curve.epochs[e].seconds), by);
+        const Pose expected = pose_at({then, {}}, curve.epochs[e]);
+        ASSERT_EQ(found.parts.size(), 1u);
+        EXPECT_NEAR(found.parts[0].tilted[axis][2 * e], light_of(expected), 1e-12);
+        ++compared;
+      }
+  }));
+  EXPECT_EQ(compared, 21u);
 }
 
 TEST(PartFit, TheFloorIsWhatTheModelMisses) {

@@ -308,5 +308,43 @@ TEST(PoseSearch, NothingMeasuredIsSaid) {
   EXPECT_EQ(answer.error().code, ErrorCode::BadInput);
 }
 
+/// A body that looks alike after every sixteenth of a turn about its axis, and upside down.
+bool flower(std::span<const Pose> poses, StokesTable &out) {
+  out.resize(poses.size(), 2);
+  const auto seen = [](const Vec3<Body> &v) {
+    const double across = v.x * v.x + v.y * v.y;
+    return 0.3 + across * (1 + 0.4 * across * across * std::cos(16 * std::atan2(v.y, v.x)));
+  };
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    for (std::size_t b = 0; b < 2; ++b)
+      out.put(k, b, {{seen(poses[k].sun) * seen(poses[k].observer), 0, 0, 0}, {}});
+  return true;
+}
+
+// Thirty-two attitudes give the same light; two dozen fits, as are taken to the end at first, can
+// hold no more than so many of them.
+TEST(PoseSearch, MoreAreSoughtWhereManyAttitudesAreAlike) {
+  const Turning truth{turned(turned({}, {0.4, 0, 0}), {0, -0.7, 0.3}), {}};
+  ObservedCurve curve = pass(40);
+  observe(curve, flower, truth, 100, 3);
+  const CurveModel model(curve, flower, {0, 1});
+  const auto answer = search_pose(model, small());
+  ASSERT_TRUE(answer) << answer.error().text();
+  constexpr double near = 0.03; // rad: a tenth of a petal
+  int found = 0;
+  for (int side = 0; side < 2; ++side)
+    for (int petal = 0; petal < 16; ++petal) {
+      const Quaternion q =
+          turned(turned(truth.attitude, {side * pi, 0, 0}), {0, 0, petal * pi / 8});
+      found += std::ranges::any_of(answer->modes,
+                                   [&](const PoseMode &mode) {
+                                     return angle_between(mode.turning.attitude, q) < near;
+                                   })
+                   ? 1
+                   : 0;
+    }
+  EXPECT_EQ(found, 32);
+}
+
 } // namespace
 } // namespace umov
