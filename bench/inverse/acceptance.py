@@ -7,7 +7,7 @@ usage: acceptance.py OBJECT TRIALS [--snr 20] [--seed 1] [--floor 0.005] [--firs
 OBJECT: as blind.py has them. --third: 40 epochs in that third of the pass instead of one every 12 s of all of it. --clouds: the air of every epoch lets through
 another part (normal in ln, a third), which is free in the fit. --case-r: the pass of case_r.py in 40 epochs, noise of photons alone, and S/N of the I (550 nm) that half of
 all attitudes and epochs exceed, not of the mean I of each curve, of which a glint is the larger part. Seconds are those of the processor.
---wrong 1: the true object is another one, as blind.py has it; the fit is told the floor, which is not put in, and takes the materials for unknown.
+--wrong 1: the true object is another one, as blind.py has it; the fit is told the floor, which is not put in, and takes the materials for unknown (as umov invert does by itself).
 missed: the truth itself fits better than the best mode by more than 2 in chi-square (with the gains that the data were made with, so it fits a little better still)."""
 import math
 import random
@@ -130,7 +130,7 @@ def tell(o, answers):
     sure = [a for a in answers if a.is_sure]
     print(f"{o.object}, S/N {o.snr:g}, seed {o.seed}, {n} curves: best < 5 deg {sum(a.best < 5 for a in answers) / n:.2f}, nearest mode < 5 deg {sum(a.nearest < 5 for a in answers) / n:.2f}; "
           f"median error of the best {statistics.median(a.best for a in answers):.3f} deg, of the nearest {statistics.median(a.nearest for a in answers):.3f} (told {statistics.median(a.told for a in answers):.3f}); modes {statistics.median(a.modes for a in answers):g}; "
-          f"held {held} ({low:.3f} to {high:.3f}) in sets of {100 * statistics.median(a.share for a in answers):.2g} %; missed {sum(a.is_missed for a in answers)}; "
+          f"held {held} ({low:.3f} to {high:.3f}) in sets of {100 * statistics.median(a.share for a in answers):.2g} %; missed {'-' if o.clouds or o.wrong else sum(a.is_missed for a in answers)}; "
           f"determined {len(sure)}, of these more than 5 deg off {sum(a.best > 5 for a in sure)}; {statistics.median(a.seconds for a in answers):.1f} s")
 
 

@@ -61,7 +61,8 @@ def write_mesh(path):
 
 
 def write_other_mesh(mesh, path, area_sd, normal_sd, rng):
-    """The mesh with facets that are apart, the area of each (in ln) and the components of its normal [rad] off by what is normal with these deviations."""
+    """The mesh with facets that are apart, the area of each (in ln) and the components of its normal [rad] off by what is normal with these deviations. It is open, and a facet may stand before its neighbour by some
+    centimetres: the box no longer hides nothing."""
     points, lines, count = [], [], 0
     for line in mesh.read_text().splitlines():
         words = line.split()

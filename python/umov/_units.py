@@ -15,7 +15,7 @@ ARGUMENTS: dict[str, str] = {
     "mag_max": _MAG, "none_prior": PART, "outliers": PART, "period_s": "s", "phase_deg": "deg", "phi_deg": "deg",
     "plate_sd_deg": "deg", "priors": PART, "q0_sd": PART, "rate_noise": "deg / s(3/2)", "rate_sd": "deg / s",
     "reflectance_sd": PART, "retardance_sd_deg": "deg", "scale_sd": PART, "sd_p": PART, "seeing_arcsec": "arcsec", "shortest_s": "s", "sky_mag": _SKY, "sky_p_sd": PART, "sky_sd": PART, "slope_sd": PART, "snr": PART,
-    "step": "s", "step_s": "s", "sun_alt_max_deg": "deg", "temperatures": "K", "theta_i_deg": "deg", "tilt_sd_deg": "deg", "theta_o_deg": "deg", "time_sd_s": "s",
+    "step": "s", "step_s": "s", "sun_alt_max_deg": "deg", "temperatures": "K", "theta_i_deg": "deg", "theta_o_deg": "deg", "tilt_sd_deg": "deg", "time_sd_s": "s",
     "timeout_s": "s", "transparency_sd": PART, "transparency_time_s": "s", "wavelength_nm": "nm", "width_nm": "nm",
     "zero_point_sd": PART, "zero_sd_mag": _MAG}
 

@@ -46,9 +46,9 @@ class Fit(NamedTuple):
     slope_sd: float = 0.2  #: invert_pose and invert_spin: how well the slopes of each material's lobe are known, in ln; 0: exactly
     reflectance_sd: float = 0.1  #: the same of what each lobe and each body reflects
     haze_sd: float = 0.3  #: the same of the haze of materials without a body
-    tilt_sd_deg: float = 0.0  #: the same of how the surfaces of each material are aligned to the body, about each of its axes [deg]; 0: exactly
     largest_floor: float = 0.1  #: the same: the floor grows with the misfit of the best attitude, up to this; 0: it stays
     allow_old_elements: bool = False  #: elements over 30 days from the observations are taken all the same
+    tilt_sd_deg: float = 0.0  #: invert_pose and invert_spin: how well the surfaces of each material are aligned to the body about each of its axes; 0: exactly, else it takes twice as long
 
 
 class Inversion(NamedTuple):
@@ -154,7 +154,7 @@ def _request(files: list[str] | None, fit: Fit | None, method: str = "auto") -> 
                    between(fit.scale_sd, "scale_sd", 0, 100), bool(fit.clouds), between(fit.outliers, "outliers", 0, 0.5),
                    not fit.intensity_only)
     out.set_material_errors(between(fit.slope_sd, "slope_sd", 0, 2), between(fit.reflectance_sd, "reflectance_sd", 0, 2),
-                            between(fit.haze_sd, "haze_sd", 0, 2), between(fit.tilt_sd_deg, "tilt_sd_deg", 0, 5),
+                            between(fit.haze_sd, "haze_sd", 0, 2), between(fit.tilt_sd_deg, "tilt_sd_deg", 0, 2),
                             between(fit.largest_floor, "largest_floor", 0, 1))
     return out
 

@@ -139,12 +139,12 @@ Pose tilted(const Pose &pose, std::size_t axis, double angle_rad) {
           pose.sun_radius_rad};
 }
 
-/// The largest of all parts, which share the turned poses; 0: all are aligned as the mesh says.
+/// The step of all parts, which share the turned poses; 0: all are aligned as the mesh says.
 double tilt_of(const std::vector<PartKind> &parts) {
   double out = 0;
   for (const PartKind &part : parts)
     out = std::max(out, part.tilt_sd_rad);
-  return out;
+  return out * tilt_step;
 }
 
 } // namespace

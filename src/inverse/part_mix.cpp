@@ -28,7 +28,8 @@ void PartMix::name_unknowns() {
     }
   for (std::size_t p = 0; p < parts; ++p) {
     std::size_t behind = p + 1; // surfaces that are turned together
-    while (behind < parts && model_.parts[behind].tilts_with_last)
+    while (behind < parts && model_.parts[behind].tilts_with_last &&
+           !model_.parts[behind].tilted[0].empty())
       ++behind;
     for (std::size_t axis = 0; axis < 3 && !(p > 0 && model_.parts[p].tilts_with_last); ++axis) {
       if (model_.parts[p].tilted[axis].empty())
@@ -68,15 +69,19 @@ void PartMix::put_slopes(std::size_t part) {
   }
 }
 
-/// With a turn it goes nearly as its first derivative says: a step to one side tells that.
+/// With a turn it goes as its first derivative says, which a short step tells: at the peak of a
+/// lobe that is next to nothing. Where a step puts light out, its ln falls without end: what a
+/// whole turn may do is bounded, or a small turn the other way would make any light of it.
 void PartMix::put_tilt(std::size_t part, std::size_t axis) {
   const std::size_t begin = bent_.size() * cells_;
   add_bend(part);
+  constexpr double most = 2; // e-folds: of a lobe half a degree wide, two widths off, turned by .5
   const PartLight &own = model_.parts[part];
   for (const std::size_t k : lit_) {
     const double least = dark * model_.i[k], tilted = own.tilted[axis][k];
     if (std::max(own.i[k], tilted) > least)
-      first_[begin + k] = std::log((tilted + least) / (own.i[k] + least));
+      first_[begin + k] =
+          std::clamp(std::log((tilted + least) / (own.i[k] + least)) / tilt_step, -most, most);
   }
 }
 

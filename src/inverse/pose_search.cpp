@@ -357,11 +357,18 @@ std::vector<std::size_t> epochs_of_first_steps(const CurveModel &model) {
   return inverse::epochs_out_of_step(model.curve().epochs.size(), 60);
 }
 
+/// How much of the places a search goes after.
+struct Effort {
+  std::size_t times = 1;        ///< as many places as usual
+  std::size_t kept = last_fits; ///< fits that are taken to the end
+  const char *label = "refine"; ///< for who waits
+};
+
 /// The search is `done` of these.
-void tell_refined(const SearchOptions &options, std::size_t done) {
+void tell_refined(const SearchOptions &options, const Effort &effort, std::size_t done) {
   constexpr std::size_t steps = 3;
   if (options.progress)
-    options.progress("refine", done, steps);
+    options.progress(effort.label, done, steps);
 }
 
 /// Places of fits under errors that shrink: many at first, by few epochs, and few of those that
@@ -398,31 +405,31 @@ std::vector<Turning> cooled_places(const CurveModel &model, const std::vector<Tu
 
 /// Fixed attitudes that are worth a fit, of those that were judged best.
 Result<std::vector<Turning>> find_places(const SearchModels &models,
-                                         const std::vector<Turning> &judged, std::size_t times,
+                                         const std::vector<Turning> &judged, const Effort &effort,
                                          FoundErrors &errors, const SearchOptions &options) {
-  tell_refined(options, 0);
-  auto out = cooled_places(models.quick, judged, times, options);
+  tell_refined(options, effort, 0);
+  auto out = cooled_places(models.quick, judged, effort.times, options);
   bool has_changed = false;
   if (out.empty() || !errors.ask(out, has_changed))
     return tl::unexpected(stopped());
   return out;
 }
 
-/// Fits that have come to rest, best first; `kept` go to the end.
+/// Fits that have come to rest, best first.
 Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
-                                           const std::vector<Turning> &places, std::size_t kept,
+                                           const std::vector<Turning> &places, const Effort &effort,
                                            FoundErrors &errors, const SearchOptions &options) {
   const inverse::FitPlan first_steps{Freedom::Attitude, 12, 0, 0, 1e-3, options.threads};
-  const std::size_t most = std::max(kept, last_fits * times_of(models.last.curve()));
-  tell_refined(options, 1);
+  const std::size_t most = std::max(effort.kept, last_fits * times_of(models.last.curve()));
+  tell_refined(options, effort, 1);
   const auto fits =
       inverse::fit_turnings(models.first, errors.likelihood(), places, {}, first_steps);
   const auto from = inverse::turnings_of(fits, most);
   bool has_changed = false;
   if (fits.empty() || !errors.ask(from, has_changed))
     return tl::unexpected(stopped());
-  tell_refined(options, 2);
-  return settled_fits(models.last, from, Freedom::Attitude, kept, errors, options);
+  tell_refined(options, effort, 2);
+  return settled_fits(models.last, from, Freedom::Attitude, effort.kept, errors, options);
 }
 
 /// Why nothing can be fitted, if that is so.
@@ -439,6 +446,8 @@ bool are_many(const std::vector<TurningFit> &fits, const ObservedCurve &curve) {
   constexpr double near = 20; // in chi-square
   constexpr std::ptrdiff_t many = 10;
   const auto modes = inverse::modes_of(fits, inverse::span_of(curve));
+  if (modes.empty())
+    return false;
   const double best = std::ranges::min(modes, {}, &PoseMode::chi2).chi2;
   return std::ranges::count_if(
              modes, [&](const PoseMode &mode) { return mode.chi2 < best + near; }) >= many;
@@ -450,14 +459,17 @@ Result<std::vector<TurningFit>> fits_of_all(const SearchModels &models,
                                             const SearchOptions &options) {
   constexpr std::size_t more = 4, most = 8; // of fits; of places
   const ObservedCurve &curve = models.last.curve();
-  const std::size_t times = times_of(curve);
-  UMOV_ASSIGN(places, find_places(models, judged, times, errors, options));
-  UMOV_ASSIGN(fits, fit_places(models, places, last_fits, errors, options));
+  const Effort usual{times_of(curve)};
+  UMOV_ASSIGN(places, find_places(models, judged, usual, errors, options));
+  UMOV_ASSIGN(fits, fit_places(models, places, usual, errors, options));
   if (!are_many(fits, curve))
     return std::move(fits);
-  UMOV_ASSIGN(more_places,
-              find_places(models, judged, std::min(more * times, most), errors, options));
-  return fit_places(models, more_places, more * last_fits, errors, options);
+  const Effort larger{std::min(more * usual.times, most), more * last_fits, "refine more"};
+  // Those that are known come first: what comes out is no worse.
+  const auto known = inverse::turnings_of(fits, fits.size());
+  UMOV_ASSIGN(more_places, find_places(models, judged, larger, errors, options));
+  more_places.insert(more_places.begin(), known.begin(), known.end());
+  return fit_places(models, more_places, larger, errors, options);
 }
 
 /// Chi-square of the best of some places after a few steps on few epochs, as of all epochs; where
@@ -504,7 +516,8 @@ Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOption
   if (auto enough = needs_measurements(errors.likelihood()); !enough)
     return tl::unexpected(enough.error());
   UMOV_ASSIGN(judged, search_grid(models.quick, options));
-  UMOV_ASSIGN(places, find_places(models, judged, times_of(models.last.curve()), errors, options));
+  const Effort effort{times_of(models.last.curve())};
+  UMOV_ASSIGN(places, find_places(models, judged, effort, errors, options));
   // Ten standard deviations in each measurement: no further step makes an explanation of that.
   const double far = 100 * static_cast<double>(errors.likelihood().measurements());
   const double seen =
@@ -513,7 +526,7 @@ Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOption
     return tl::unexpected(stopped());
   if (seen > far)
     return seen;
-  UMOV_ASSIGN(fits, fit_places(models, places, last_fits, errors, options));
+  UMOV_ASSIGN(fits, fit_places(models, places, effort, errors, options));
   return fits.front().at.chi2;
 }
 

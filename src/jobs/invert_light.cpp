@@ -92,7 +92,7 @@ void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOpt
   if (!ready.parts && !is_stopped(cancel))
     diagnostics.warn("the light of this object cannot be taken apart by material (rays alone, "
                      "parts that turn, measured or brushed surfaces): "
-                     "roughness and reflectance are taken for right");
+                     "roughness, reflectance and alignment are taken for right");
 }
 
 std::vector<PartKind> parts_of(const SearchedLight &ready) {

@@ -190,12 +190,15 @@ def test_materials_that_are_nearly_known_give_the_answer_of_known_ones(umov, sce
     told = []
     for sd in ("0", "1e-5"):
         done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--json", "--grid", "10000",
-                    "--slope-sd", sd, "--reflectance-sd", sd, "--haze-sd", sd)
+                    "--slope-sd", sd, "--reflectance-sd", sd, "--haze-sd", sd, "--tilt-sd", sd)
         assert done.code == 0, done.err
         told.append(json.loads(done.out))
     assert told[1]["chi2"] == pytest.approx(told[0]["chi2"], abs=1)
     assert apart(told[0]["modes"][0]["q"], told[1]["modes"][0]["q"]) < 0.3
     assert len(told[1]["nuisances"]) > len(told[0]["nuisances"])
+    tilts = [one for one in told[1]["nuisances"] if one["name"].startswith("tilt of ")]
+    assert len({one["name"] for one in tilts}) == len(tilts) > 0 == len(tilts) % 3  # three axes of each material, and no more
+    assert all(one["unit"] == "deg" and abs(one["value"]) < 1e-3 for one in tilts)
 
 
 def test_other_materials_widen_the_set_until_it_holds_the_truth(umov, scene, tmp_path):

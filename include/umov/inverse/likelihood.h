@@ -53,9 +53,11 @@ double chi2_probability(double chi2, double dof);
 /// it is aligned to the body.
 struct PartKind {
   std::string name;
-  double sd = 0;          ///< of ln of its amount
-  double slope_sd = 0;    ///< of ln of the slopes of its lobe; 0: it has none, or they are known
-  double tilt_sd_rad = 0; ///< of its turn about each body axis; 0: it is aligned as the mesh says
+  double sd = 0;       ///< of ln of its amount
+  double slope_sd = 0; ///< of ln of the slopes of its lobe; 0: it has none, or they are known
+  /// Of its turn about each body axis, the same for all parts that have one; 0: it is aligned as
+  /// the mesh says.
+  double tilt_sd_rad = 0;
   bool tilts_with_last = false; ///< it is turned as the part before it, of the same surfaces
   /// Of a PoseLighting: its light, and that of smaller and of larger slopes.
   [[nodiscard]] std::size_t blocks() const { return slope_sd > 0 ? 3 : 1; }
@@ -65,13 +67,17 @@ struct PartKind {
            (tilt_sd_rad > 0 && !tilts_with_last ? 3u : 0u);
   }
 };
+/// Of a standard deviation: short, for light bends within a turn that a glint is wide.
+inline constexpr double tilt_step = 0.25;
+
 /// Light of one part as the model has it: [epoch * bands + band].
 struct PartLight {
   std::span<const double> i, q, u;
   /// `i` with slopes one standard deviation smaller and larger; empty: they are known.
   std::span<const double> smooth, rough = {};
   double sd = 0; ///< of ln of its amount
-  /// `i` turned by one standard deviation about each body axis; empty: it is aligned as it is.
+  /// `i` turned by `tilt_step` standard deviations about each body axis; empty: it is aligned as it
+  /// is.
   std::array<std::span<const double>, 3> tilted = {};
   bool tilts_with_last = false; ///< as PartKind has it
 };

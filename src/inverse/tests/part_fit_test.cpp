@@ -69,7 +69,7 @@ TEST(PartFit, FindsWhatALobeIsOff) {
 // along, is .01 off, a tenth of a standard deviation of the amount.
 TEST(PartFit, FindsHowFarALobeIsTurned) {
   constexpr double sd = 0.1, off = 0.13; // of the lobe's place
-  const Toy toy, tilted(sd);
+  const Toy toy, tilted(sd * tilt_step);
   const CurveLikelihood likelihood(Toy(off).seen(0, 0), no_floor());
   PartLight lobe{toy.lobe, toy.q, toy.none, {}, {}, 0.1};
   lobe.tilted[1] = tilted.lobe;
@@ -78,6 +78,52 @@ TEST(PartFit, FindsHowFarALobeIsTurned) {
   ASSERT_EQ(found.off.size(), 2u); // its amount, and a turn about one axis
   EXPECT_NEAR(found.off[0], 0, 0.4);
   EXPECT_NEAR(found.off[1], off / sd, 0.15);
+}
+
+// The lobe and the rest are of one surface: one turn for both, which the rest, .1 of the light a
+// unit of place, tells as well.
+TEST(PartFit, WhatASurfaceScattersIsTurnedWithItsLobe) {
+  constexpr double sd = 0.1, off = 0.13;
+  const Toy toy, tilted(sd * tilt_step);
+  const CurveLikelihood likelihood(Toy(off).seen(0, 0), no_floor());
+  PartLight lobe{toy.lobe, toy.q, toy.none, {}, {}, 0.1}, rest{toy.rest, toy.none, toy.none};
+  lobe.tilted[1] = tilted.lobe;
+  rest.tilted[1] = tilted.rest;
+  rest.tilted[0] = rest.tilted[2] = lobe.tilted[0] = lobe.tilted[2] = toy.lobe; // nothing changes
+  rest.tilted[0] = rest.tilted[2] = toy.rest;
+  rest.tilts_with_last = true;
+  const PartLight parts[] = {lobe, rest};
+  const auto found = likelihood.fit_parts({toy.all, toy.q, toy.none, {}, parts});
+  ASSERT_EQ(found.off.size(), 4u); // the lobe's amount, and three turns
+  EXPECT_NEAR(found.off[0], 0, 0.3);
+  EXPECT_NEAR(found.off[1], 0, 1e-9);
+  EXPECT_NEAR(found.off[2], off / sd, 0.1);
+  EXPECT_NEAR(found.off[3], 0, 1e-9);
+  const Toy moved(off);
+  for (std::size_t k = 0; k < found.i.size(); ++k)
+    EXPECT_NEAR(found.i[k] / moved.all[k], 1, 0.02); // noise of 1 %, and what bends beside a line
+}
+
+// A surface that a small turn puts out, as at the edge of the dark: the other way it does not
+// become any light that is asked.
+TEST(PartFit, ATurnThatPutsLightOutMakesNoneOfItTheOtherWay) {
+  const std::vector<double> all{1, 1, 1, 1}, edge{0.01, 0.01, 0, 0}, none(4, 0);
+  ObservedCurve seen;
+  seen.bands = {"a"};
+  seen.epochs.resize(4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    ObservedSample s;
+    s.epoch = k;
+    s.i = k < 2 ? 2 : 1; // a light that the edge would have to give a hundred times over
+    s.i_sd = 0.01;
+    seen.samples.push_back(s);
+  }
+  PartLight part{edge, none, none};
+  part.tilted[0] = none;
+  const PartLight parts[] = {part};
+  const auto found = CurveLikelihood(seen, no_floor()).fit_parts({all, none, none, {}, parts});
+  ASSERT_EQ(found.off.size(), 1u);
+  EXPECT_LT(found.i[0], 1 + 0.01 * std::exp(2 * std::abs(found.off[0])));
 }
 
 TEST(PartFit, FindsWhatALobeIsOffBesideNumbersThatAreWrong) {
@@ -326,7 +372,8 @@ TEST(CurveModel, TurnedSurfacesShowTheLightOfATurnedBody) {
   ASSERT_TRUE(model.for_each(some, {}, 1, [&](std::size_t, const ModelLight &found) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t e = 0; e < curve.epochs.size(); ++e) {
-        const Vec3<Body> by{axis == 0 ? sd : 0, axis == 1 ? sd : 0, axis == 2 ? sd : 0};
+        const double turn = sd * tilt_step;
+        const Vec3<Body> by{axis == 0 ? turn : 0, axis == 1 ? turn : 0, axis == 2 ? turn : 0};
         const Quaternion then = turned(attitude_at(at, curve.epochs[e].seconds), by);
         const Pose expected = pose_at({then, {}}, curve.epochs[e]);
         ASSERT_EQ(found.parts.size(), 1u);
