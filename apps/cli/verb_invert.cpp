@@ -119,7 +119,7 @@ void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   verb.add_option(
           "--tilt-sd", o->request.materials.tilt_deg,
           "How well the surfaces of each material are aligned to the body about each of its "
-          "axes [deg]; 0: exactly; else it takes twice as long")
+          "axes [deg]; 0: exactly; else it takes longer")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
   verb.add_option("--largest-floor", o->request.largest_floor,

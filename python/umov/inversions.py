@@ -48,7 +48,7 @@ class Fit(NamedTuple):
     haze_sd: float = 0.3  #: the same of the haze of materials without a body
     largest_floor: float = 0.1  #: the same: the floor grows with the misfit of the best attitude, up to this; 0: it stays
     allow_old_elements: bool = False  #: elements over 30 days from the observations are taken all the same
-    tilt_sd_deg: float = 0.0  #: invert_pose and invert_spin: how well the surfaces of each material are aligned to the body about each of its axes; 0: exactly, else it takes twice as long
+    tilt_sd_deg: float = 0.0  #: invert_pose and invert_spin: how well the surfaces of each material are aligned to the body about each of its axes; 0: exactly, else it takes longer
 
 
 class Inversion(NamedTuple):

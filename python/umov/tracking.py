@@ -89,7 +89,7 @@ def invert_track(light: AnyCurves, scenario: AnyScenario, start: Inversion | str
     """
     walk = between(rate_noise, "rate_noise", 0, 10)
     sd = between(rate_sd, "rate_sd", 1e-9, 10)
-    if fit is not None and getattr(fit, "tilt_sd_deg", 0):
+    if isinstance(fit, Fit) and fit.tilt_sd_deg:
         raise UsageError(f"tilt_sd_deg is {fit.tilt_sd_deg}; filters take surfaces for aligned, so 0 was expected: only invert_pose and invert_spin ask it")
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,), _start_of(start) as named:

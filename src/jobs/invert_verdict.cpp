@@ -222,7 +222,8 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   const std::size_t first = judgement.nuisances.size() - judgement.fitted.size();
   for (std::size_t k = 0; k < judgement.nuisances.size(); ++k) {
     const Parameter &p = judgement.nuisances[k];
-    unknowns.push_back({{"name", p.name}, {"prior", name_of(p.prior)}, {"sd", p.sd}});
+    unknowns.push_back(
+        {{"name", p.name}, {"unit", p.unit}, {"prior", name_of(p.prior)}, {"sd", p.sd}});
     if (k >= first) // of the best attitude
       unknowns.back()["value"] = p.sd * judgement.fitted[k - first];
   }
