@@ -103,12 +103,13 @@ def main():
     parser.add_argument("--wrong", type=float, default=0)
     o, work = coverage.told(parser)
     o.typical, o.scenario = None, blind.SCENARIO
+    known = ["--zero-point-sd", EXACT] if o.case_r else []
     if o.case_r:
         o.scenario = case_r.scenario(blind.SCENARIO, work)
-        o.floor = o.floor if o.wrong else 0
-        o.rest = coverage.fit_options(o.floor, ["--zero-point-sd", EXACT, "--largest-floor", 0, *o.given])
     if o.wrong:
-        o.rest = ["--floor", o.floor, *(["--zero-point-sd", EXACT] if o.case_r else []), *o.given]
+        o.rest = ["--floor", o.floor, *known, *o.given]
+    elif o.case_r:
+        o.floor, o.rest = 0, coverage.fit_options(0, [*known, "--largest-floor", 0, *o.given])
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, blind.MESH[o.object]):
         blind.make_mesh(o.umov, words, mesh)

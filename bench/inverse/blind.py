@@ -36,14 +36,14 @@ MATERIALS = {
     "box": chamfered_box.names(False),
     "grey-box": chamfered_box.names(True),
 }
+BOXES = ("box", "grey-box")  # no shapes of umov mesh make
 MESH = {  # fitted, true
     "hst": (["hst", "--sides", 36], ["hst", "--sides", 60]),
     "agena": (["agena", "--sides", 36], ["agena", "--sides", 60]),
     "box-wing": (["box-wing", "--facets", 600], ["box-wing", "--facets", 1500]),
     "cubesat": (["cubesat", "--panels", 1], ["cubesat", "--panels", 1]),
     "metals": (["box-wing", "--facets", 2000], ["box-wing", "--facets", 10000]),
-    "box": (None, None),  # no shape of umov mesh make
-    "grey-box": (None, None),
+    **{name: (None, None) for name in BOXES},
 }
 SPAN = ("2018-01-21T05:08:00Z", "2018-01-21T05:16:00Z")  # of a pass
 SCENARIO = """umov = 1
@@ -214,10 +214,10 @@ def in_toml(value):
 def other_material(name, much, rng):
     """A material of the library or of the boxes, a little off, as a table of a scenario."""
     if name in chamfered_box.MATERIAL_OF:
-        table = tomllib.loads(chamfered_box.MATERIAL_OF[name])
+        table, slope_sd = tomllib.loads(chamfered_box.MATERIAL_OF[name]), 0.1
     else:
-        table = tomllib.loads((ROOT / f"data/materials/{name}.toml").read_text())["material"][name]
-    slope = math.exp((0.1 if name in chamfered_box.MATERIAL_OF else 0.2) * much * rng.gauss(0, 1))
+        table, slope_sd = tomllib.loads((ROOT / f"data/materials/{name}.toml").read_text())["material"][name], 0.2
+    slope = math.exp(slope_sd * much * rng.gauss(0, 1))
     for key, power in (("alpha", 1), ("m", -2), ("nu", -2), ("nv", -2)):
         if key in table.get("distribution", {}):
             table["distribution"][key] *= slope**power
@@ -237,7 +237,7 @@ def other_object(o, trial, scenario, mesh, path):
     names = sorted(set(MATERIALS[o.object].values()))
     for name in names:
         scenario = scenario.replace(f'"{name}"', f'"true_{name}"')
-    if o.object in ("box", "grey-box"):
+    if o.object in BOXES:
         chamfered_box.write_other_mesh(mesh, path, 0.05 * o.wrong, math.radians(0.5) * o.wrong, rng)
     else:
         factor = [math.exp(0.025 * o.wrong * rng.gauss(0, 1)) for _ in range(3)]
@@ -272,7 +272,7 @@ def make_curve(o, work, meshes, trial, law, step, rng, span=SPAN, scenario=SCENA
             text = text.replace(f'method = "{method}"', f'method = "{method}"\nbounces = {o.surfaces}')
         if o.object == "metals":
             text += metals_in_toml()
-        if o.object in ("box", "grey-box"):
+        if o.object in BOXES:
             text = text.replace('normals = "smooth"', 'normals = "flat"') + chamfered_box.materials_in_toml()
         if o.wrong and out == "truth":
             text = other_object(o, trial, text, mesh, work / "wrong.obj")

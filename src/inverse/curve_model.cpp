@@ -14,8 +14,13 @@ Quaternion attitude_at(const Turning &turning, double seconds) {
 
 namespace {
 
+/// A direction that stands still, in a body that turned about an axis (Rodrigues).
+Vec3<Body> turned_back(const Vec3<Body> &v, const Vec3<Body> &axis, double cosine, double sine) {
+  return normalized(v * cosine - cross(axis, v) * sine + axis * (dot(axis, v) * (1 - cosine)));
+}
+
 /// A turning as what it does to directions: one rotation for all epochs, and for each the turn
-/// about one axis since (Rodrigues). Searches ask for a hundred million of them.
+/// about one axis since. Searches ask for a hundred million of them.
 class Motion {
 public:
   explicit Motion(const Turning &turning)
@@ -26,11 +31,8 @@ public:
     if (!(rate_ > 0))
       return {normalized(sun), normalized(observer), epoch.sun_radius_rad};
     const double angle = rate_ * epoch.seconds, c = std::cos(angle), s = std::sin(angle);
-    // What stands among the stars turns the other way in the body.
-    const auto later = [&](const Vec3<Body> &v) {
-      return normalized(v * c - cross(axis_, v) * s + axis_ * (dot(axis_, v) * (1 - c)));
-    };
-    return {later(sun), later(observer), epoch.sun_radius_rad};
+    return {turned_back(sun, axis_, c, s), turned_back(observer, axis_, c, s),
+            epoch.sun_radius_rad};
   }
 
 private:
@@ -126,18 +128,20 @@ private:
   std::size_t blocks_;
 };
 
-Vec3<Body> turned_back(const Vec3<Body> &v, std::size_t axis, double angle_rad) {
-  const Vec3<Body> about{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
-  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
-  return normalized(v * c - cross(about, v) * s + about * (dot(about, v) * (1 - c)));
-}
+/// What all surfaces show that are turned about the body axes: the directions, turned back. The
+/// phase angle stays, and with it what is kept for it.
+class Tilts {
+public:
+  explicit Tilts(double angle_rad) : cosine_(std::cos(angle_rad)), sine_(std::sin(angle_rad)) {}
+  [[nodiscard]] Pose about(std::size_t axis, const Pose &pose) const {
+    constexpr Vec3<Body> axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    return {turned_back(pose.sun, axes[axis], cosine_, sine_),
+            turned_back(pose.observer, axes[axis], cosine_, sine_), pose.sun_radius_rad};
+  }
 
-/// What all surfaces show that are turned about a body axis: the directions, turned back.
-Pose tilted(const Pose &pose, std::size_t axis, double angle_rad) {
-  // A turn as it is: the phase angle stays, and with it what is kept for it.
-  return {turned_back(pose.sun, axis, angle_rad), turned_back(pose.observer, axis, angle_rad),
-          pose.sun_radius_rad};
-}
+private:
+  double cosine_, sine_;
+};
 
 /// The step of all parts, which share the turned poses; 0: all are aligned as the mesh says.
 double tilt_of(const std::vector<PartKind> &parts) {
@@ -155,6 +159,7 @@ bool CurveModel::for_each(std::span<const Turning> turnings, std::span<const std
   if (epochs.empty())
     epochs = all_;
   const double tilt = tilt_of(parts_);
+  const Tilts tilts(tilt);
   const std::size_t ways = tilt > 0 ? 4 : 1; // as it is, and turned about three axes
   const std::size_t bands = column_.size(), per = epochs.size();
   constexpr std::size_t poses_at_once = 1u << 16; // some megabytes of light
@@ -171,7 +176,7 @@ bool CurveModel::for_each(std::span<const Turning> turnings, std::span<const std
         const Pose pose = motion.at(curve_.epochs[epochs[e]]);
         poses[(k * per + e) * ways] = pose;
         for (std::size_t way = 1; way < ways; ++way)
-          poses[(k * per + e) * ways + way] = tilted(pose, way - 1, tilt);
+          poses[(k * per + e) * ways + way] = tilts.about(way - 1, pose);
       }
     });
     if (!light_(poses, table))

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace umov::inverse {
+namespace {
+
+constexpr double dark = 1e-6; // of all light: whatever it becomes is not seen
+
+} // namespace
 
 PartMix::PartMix(const ModelLight &model)
     : model_(model), cells_(model.i.size()), i_(model.i.begin(), model.i.end()),
@@ -27,11 +32,13 @@ void PartMix::name_unknowns() {
       put_slopes(p);
     }
   for (std::size_t p = 0; p < parts; ++p) {
+    if (p > 0 && model_.parts[p].tilts_with_last)
+      continue;
     std::size_t behind = p + 1; // surfaces that are turned together
     while (behind < parts && model_.parts[behind].tilts_with_last &&
            !model_.parts[behind].tilted[0].empty())
       ++behind;
-    for (std::size_t axis = 0; axis < 3 && !(p > 0 && model_.parts[p].tilts_with_last); ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       if (model_.parts[p].tilted[axis].empty())
         continue;
       unknowns_.push_back({p, bent_.size(), behind - p});
@@ -41,22 +48,18 @@ void PartMix::name_unknowns() {
   }
 }
 
-namespace {
-
-constexpr double dark = 1e-6; // of all light: whatever it becomes is not seen
-
-} // namespace
-
-void PartMix::add_bend(std::size_t part) {
+/// Its first place in what is told of bends.
+std::size_t PartMix::add_bend(std::size_t part) {
+  const std::size_t begin = first_.size();
   bent_.push_back(part);
   first_.resize(bent_.size() * cells_, 0);
   second_.resize(bent_.size() * cells_, 0);
+  return begin;
 }
 
 /// Far from a lobe's middle its light goes with a power of e of the slope, and near it nearly so.
 void PartMix::put_slopes(std::size_t part) {
-  const std::size_t begin = bent_.size() * cells_;
-  add_bend(part);
+  const std::size_t begin = add_bend(part);
   const PartLight &own = model_.parts[part];
   for (const std::size_t k : lit_) {
     const double least = dark * model_.i[k];
@@ -73,8 +76,7 @@ void PartMix::put_slopes(std::size_t part) {
 /// lobe that is next to nothing. Where a step puts light out, its ln falls without end: what a
 /// whole turn may do is bounded, or a small turn the other way would make any light of it.
 void PartMix::put_tilt(std::size_t part, std::size_t axis) {
-  const std::size_t begin = bent_.size() * cells_;
-  add_bend(part);
+  const std::size_t begin = add_bend(part);
   constexpr double most = 2; // e-folds: of a lobe half a degree wide, two widths off, turned by .5
   const PartLight &own = model_.parts[part];
   for (const std::size_t k : lit_) {

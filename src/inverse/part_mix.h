@@ -34,7 +34,7 @@ public:
 
 private:
   void name_unknowns();
-  void add_bend(std::size_t part);
+  std::size_t add_bend(std::size_t part);
   void put_slopes(std::size_t part);
   void put_tilt(std::size_t part, std::size_t axis);
   ModelLight model_;

@@ -497,8 +497,7 @@ double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> 
 Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options) {
   const auto &[model, first, quick] = models;
   FoundErrors errors(model, options);
-  if (auto enough = needs_measurements(errors.likelihood()); !enough)
-    return tl::unexpected(enough.error());
+  UMOV_TRY(needs_measurements(errors.likelihood()));
   UMOV_ASSIGN(judged, search_grid(quick, options));
   UMOV_ASSIGN(fits, fits_of_all(models, judged, errors, options));
   UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), fits, Freedom::Attitude,
@@ -513,8 +512,7 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
 
 Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options) {
   FoundErrors errors(models.last, options);
-  if (auto enough = needs_measurements(errors.likelihood()); !enough)
-    return tl::unexpected(enough.error());
+  UMOV_TRY(needs_measurements(errors.likelihood()));
   UMOV_ASSIGN(judged, search_grid(models.quick, options));
   const Effort effort{times_of(models.last.curve())};
   UMOV_ASSIGN(places, find_places(models, judged, effort, errors, options));

@@ -94,7 +94,7 @@ bool LightByPart::name_parts(const AbundanceTable &sums, const MaterialErrors &e
   const PartKind of_lobe{"", errors.reflectance, errors.slope, tilt};
   // What a surface scatters is turned with its lobe.
   const auto beside = [&](const Columns &lobe, double sd) {
-    return PartKind{"", sd, 0, tilt, !lobe.empty() && of_lobe.unknowns() > 0};
+    return PartKind{"", sd, 0, tilt, !lobe.empty()};
   };
   for (const Surface &surface : scene.front)
     if (const auto one = found.extract(surface.material().name); !one.empty()) {
