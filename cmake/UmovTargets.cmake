@@ -46,12 +46,20 @@ if(UMOV_FUZZ)
 endif()
 
 # A release reads the headers that nearly all sources include once: half a second less for each of three
-# hundred files. Other builds include what they say, so that nothing is forgotten.
+# hundred files, a second for each of two hundred tests. Other builds include what they say, so that
+# nothing is forgotten.
 add_library(umov_common_headers STATIC ${CMAKE_CURRENT_LIST_DIR}/common_headers.cpp)
 target_link_libraries(umov_common_headers PRIVATE umov_flags fmt::fmt tl::expected)
 if(UMOV_QUICK_TO_COMPILE AND CMAKE_BUILD_TYPE STREQUAL Release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_precompile_headers(umov_common_headers PRIVATE ${CMAKE_CURRENT_LIST_DIR}/common_headers.h)
   set(UMOV_COMMON_HEADERS ON)
+  if(UMOV_BUILD_TESTS)
+    # A program, as tests are: code of libraries stands elsewhere.
+    add_executable(umov_test_headers EXCLUDE_FROM_ALL ${CMAKE_CURRENT_LIST_DIR}/common_headers.cpp)
+    target_compile_features(umov_test_headers PRIVATE cxx_std_20)
+    target_link_libraries(umov_test_headers PRIVATE umov_flags fmt::fmt tl::expected GTest::gtest_main)
+    target_precompile_headers(umov_test_headers PRIVATE ${CMAKE_CURRENT_LIST_DIR}/test_headers.h)
+  endif()
 endif()
 
 # umov_quick_to_compile(TARGET ...): what reads, writes and says things, where -O3 makes for long compiling and for
@@ -135,6 +143,10 @@ function(umov_tests name)
   add_executable(${target} ${arg_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE umov_flags ${arg_LIBRARIES} GTest::gtest_main)
+  if(UMOV_COMMON_HEADERS)
+    target_link_libraries(${target} PRIVATE fmt::fmt tl::expected)
+    target_precompile_headers(${target} REUSE_FROM umov_test_headers)
+  endif()
   target_compile_definitions(${target} PRIVATE UMOV_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                $<$<BOOL:${UMOV_SANITIZE}>:UMOV_SANITIZED>)
   include(GoogleTest)

@@ -85,13 +85,17 @@ double learnt_of_all(const std::vector<Learnt> &trial, double total) {
   return last.cpu_s * part(total, low) / part(last.units, low);
 }
 
+/// CPU seconds of a trial: what tells the cost of most jobs, and what is too much.
+constexpr double enough_s = 1.25, at_most_s = 20;
+
 /// Asks a job for pieces of it.
 class Trial {
 public:
   Trial(jobs::RangedJob &job, const jobs::Monitor &monitor) : job_(job), monitor_(monitor) {}
 
-  /// Four pieces of that length, and each of them again at once as long as that is cheaper: what
-  /// the first time costs more is learnt, masks for the most part, and is not paid for every row.
+  /// Four pieces of that length, or fewer that are dear, and each of them again at once as long as
+  /// that is cheaper: what the first time costs more is learnt, masks for the most part, and is not
+  /// paid for every row.
   Result<Sampled> round(std::size_t length) {
     const auto places = static_cast<double>(job_.total() - length + 1);
     Sampled first, again;
@@ -101,19 +105,27 @@ public:
       UMOV_ASSIGN(once, ask(piece));
       add(once, first);
       double more = 0;
-      if (learns_ && once.cpu_s < dear_s) {
+      if (learns_ && may_ask(once, once)) {
         UMOV_ASSIGN(twice, ask(piece));
         more = std::max(0.0, once.cpu_s - twice.cpu_s);
         once.cpu_s = std::min(once.cpu_s, twice.cpu_s);
       }
       add(once, again);
       learnt_.push_back({learnt_.back().units + once.units, learnt_.back().cpu_s + more});
+      if (!may_ask(once, again))
+        break;
     }
     learns_ = learns_ && again.cpu_s < 0.95 * first.cpu_s;
     return again;
   }
   /// The first time still costs more.
   [[nodiscard]] bool learns() const { return learns_; }
+  /// Another piece as dear as `piece` leaves the trial below half of the whole job, of which `some`
+  /// is a part: a few curves shall not be answered twice before the first counts.
+  [[nodiscard]] bool may_ask(const Sampled &piece, const Sampled &some) const {
+    const double whole_s = some.cpu_s / some.units * static_cast<double>(job_.total());
+    return spent_ + piece.cpu_s <= std::max(enough_s, std::min(at_most_s, whole_s / 2));
+  }
   /// CPU seconds so far.
   [[nodiscard]] double spent() const { return spent_; }
   [[nodiscard]] double learnt() const {
@@ -121,8 +133,6 @@ public:
   }
 
 private:
-  static constexpr double dear_s = 20; ///< a piece that is not asked for twice
-
   static void add(const Sampled &one, Sampled &all) {
     all.cpu_s += one.cpu_s;
     all.bytes += one.bytes;
@@ -149,9 +159,9 @@ private:
 } // namespace
 
 Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monitor &monitor) {
-  constexpr double enough_s = 1.25, too_long_s = 1.5, at_most_s = 20, settled = 0.15;
+  constexpr double too_long_s = 1.5, settled = 0.15;
   const std::size_t total = job.total();
-  std::size_t length = std::max<std::size_t>(1, std::min(total, job.grain() / 128));
+  std::size_t length = std::max<std::size_t>(1, std::min(total / 8, job.grain() / 128));
   Rate out;
   out.setup_cpu_s = setup_cpu_s;
   Trial trial(job, monitor);
@@ -163,7 +173,7 @@ Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monit
     const double with_next_s = trial.spent() + 2 * (trial.spent() - spent);
     const bool is_enough =
         trial.spent() > enough_s || (!trial.learns() && with_next_s > too_long_s);
-    if ((is_enough && is_settled) || trial.spent() > at_most_s || length * 8 > total)
+    if ((is_enough && is_settled) || !trial.may_ask({}, now) || length * 8 > total)
       break;
     length = std::min(total, length * 2);
   }

@@ -49,6 +49,7 @@ panel_px_front = "cell_gaas"
 panel_px_back = "paint_black"
 panel_px_edge = "aluminium_anodized"
 """
+KNOWN = ["--visibility", "masks", "--slope-sd", "0", "--reflectance-sd", "0", "--haze-sd", "0"]  # materials, shadows by look-up alone: a third of the time and less
 TRUTHS = [[0.5, 0.5, -0.5, 0.5], [0.8, 0.0, 0.6, 0.0], [0.1, 0.7, 0.7, 0.1]]
 
 
@@ -342,7 +343,7 @@ def constant(path, snr, seed, bands=("nm:425", "nm:550", "nm:650")):
 def test_constant_light_is_never_a_sure_attitude(umov, scene, tmp_path):
     for seed, snr in enumerate((3, 20)):
         constant(tmp_path / "obs.csv", snr, seed)
-        done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json")
+        done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json", *KNOWN)
         assert done.code in (0, 4), done.err
         verdict = json.loads(done.out)
         assert verdict["verdict"] in ("undetermined", "no_fit", "ambiguous")

@@ -13,25 +13,37 @@ from astropy.table import Table
 from conftest import ROOT, UMOV, processor_s_of_children
 from test_identify import NAMES, library  # noqa: F401
 from test_invert import TRUTHS, observe, scene  # noqa: F401
+from test_track import TRUTH
 
+KNOWN = ("--slope-sd", "0", "--reflectance-sd", "0", "--haze-sd", "0")
 POSE = ("modes", "set95", "samples", "twins", "fit")
 
 
-@pytest.fixture
-def curves(umov, scene, tmp_path):
+def write_curves(umov, scene, folder, truths, step):
     """a.csv, b.csv, c.csv of three attitudes, and bad.csv, which is no curve; returns them in an order with bad.csv second."""
-    for k, (name, truth) in enumerate(zip("abc", TRUTHS)):
-        assert umov("run", scene(truth, "masks", "truth", step=60), "-q").code == 0
-        observe(tmp_path, f"{name}.csv", 50, k)
-    (tmp_path / "bad.csv").write_text("time_utc,band,flux\n2018-01-21T05:09:00Z,nm:425,much\n")
+    for k, (name, truth) in enumerate(zip("abc", truths)):
+        assert umov("run", scene(truth, "masks", "truth", step=step), "-q").code == 0
+        observe(folder, f"{name}.csv", 50, k)
+    (folder / "bad.csv").write_text("time_utc,band,flux\n2018-01-21T05:09:00Z,nm:425,much\n")
     scene([1, 0, 0, 0], "masks", "fit")
     return ["a.csv", "bad.csv", "b.csv", "c.csv"]
 
 
+@pytest.fixture
+def curves(umov, scene, tmp_path):
+    """Curves that tell their attitude, in two seconds each."""
+    return write_curves(umov, scene, tmp_path, [TRUTHS[0], TRUTH, TRUTHS[2]], 30)
+
+
+@pytest.fixture
+def short_curves(umov, scene, tmp_path):
+    """Curves of few epochs, of which two leave much open and are answered by particles."""
+    return write_curves(umov, scene, tmp_path, TRUTHS, 60)
+
+
 def asked(curves):
     """Materials that are known: what many curves share does not depend on it, and each takes a third of the time."""
-    return ["invert", "pose", *curves, "--scenario", "fit.toml", "--grid", "2000", "--visibility", "masks",
-            "--slope-sd", "0", "--reflectance-sd", "0", "--haze-sd", "0"]
+    return ["invert", "pose", *curves, "--scenario", "fit.toml", "--grid", "2000", "--visibility", "masks", *KNOWN]
 
 
 def error_of(done):
@@ -42,7 +54,8 @@ def data(path):
     return [line for line in path.read_text().splitlines() if not line.startswith("#")]
 
 
-def test_each_curve_has_the_answer_that_it_has_alone(umov, curves, tmp_path):
+def test_each_curve_has_the_answer_that_it_has_alone(umov, short_curves, tmp_path):
+    curves = short_curves
     done = umov(*asked(curves), "--each", "-o", "each")
     assert done.code == 3, done.err  # one has no answer
     assert "1 of 4 curves have no answer" in done.err and "bad.csv:2" in done.err
@@ -130,8 +143,8 @@ def test_shards_of_curves_are_its_rows(umov, curves, plain, tmp_path):
     assert rows == data(tmp_path / "plain/modes.ecsv")[1:]
 
 
-def test_identities_in_parts_are_the_plain_ones(umov, curves, library, tmp_path):
-    command = ["identify", *curves, "--each", "--library", "lib", "--scenario", "place.toml"]
+def test_identities_in_parts_are_the_plain_ones(umov, short_curves, library, tmp_path):
+    command = ["identify", *short_curves, "--each", "--library", "lib", "--scenario", "place.toml"]
     plain = umov(*command, "-o", "plain")
     assert plain.code == 3 and "bad.csv" in plain.err, plain.err
     identity = Table.read(tmp_path / "plain/identity.ecsv")
@@ -144,7 +157,7 @@ def test_identities_in_parts_are_the_plain_ones(umov, curves, library, tmp_path)
         assert (tmp_path / f"{name}.ecsv").read_bytes() == (tmp_path / f"plain/{name}.ecsv").read_bytes(), name
 
 
-def test_objects_are_made_ready_once(umov, curves, library, tmp_path):
+def test_objects_are_made_ready_once(umov, short_curves, library, tmp_path):
     """A mesh that goes away when the first curve is answered is missed by none of the others, whose answers are those that
     they have alone."""
     command = ["identify", "a.csv", "b.csv", "c.csv", "--each", "--library", "lib", "--scenario", "place.toml", "--grid", "2000",
@@ -172,8 +185,8 @@ def test_objects_are_made_ready_once(umov, curves, library, tmp_path):
     assert sum(by == "model") == 3  # its own light was asked by every curve
 
 
-def test_another_orbit_is_another_job(umov, curves, library, tmp_path):
-    command = ["identify", *curves, "--each", "--library", "lib", "--scenario", "place.toml"]
+def test_another_orbit_is_another_job(umov, short_curves, library, tmp_path):
+    command = ["identify", *short_curves, "--each", "--library", "lib", "--scenario", "place.toml"]
     orbit, place = tmp_path / "hst.tle", tmp_path / "place.toml"
     orbit.write_text((ROOT / "data/tle/hst.tle").read_text())
     place.write_text(place.read_text().replace(f"{ROOT}/data/tle/hst.tle", "hst.tle"))

@@ -39,6 +39,7 @@ public:
   Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &,
                     Diagnostics &) override {
     std::size_t learnt = 0;
+    asked_ += range.count;
     for (std::size_t k = range.first; directions_ > 0 && k < range.end(); ++k)
       learnt += known_.insert(scattered(k) % directions_).second ? 1U : 0U;
     spend(static_cast<double>(learnt) * direction_s_ + static_cast<double>(range.count) * row_s_);
@@ -50,9 +51,11 @@ public:
   [[nodiscard]] double all_s() const {
     return static_cast<double>(total_) * row_s_ + static_cast<double>(directions_) * direction_s_;
   }
+  /// Rows that were asked for, each as often as it was.
+  [[nodiscard]] std::size_t asked() const { return asked_; }
 
 private:
-  std::size_t total_, directions_;
+  std::size_t total_, directions_, asked_ = 0;
   double row_s_, direction_s_;
   std::set<std::size_t> known_;
 };
@@ -89,6 +92,15 @@ TEST(Plans, OfRowsThatLearnNothingAskForThemOnce) {
   const auto rate = measure(job, 0, {});
   ASSERT_TRUE(rate) << rate.error().text();
   EXPECT_LT(cpu_s() - before, 5); // a second or two is what is promised
+  EXPECT_NEAR(predicted(job, *rate), job.all_s(), 0.1 * job.all_s());
+}
+
+/// As curves that are answered one by one: a second one would be half of the job and more.
+TEST(Plans, OfAFewDearRowsAskForOne) {
+  Spending job(3, 1.5, 0, 0);
+  const auto rate = measure(job, 0, {});
+  ASSERT_TRUE(rate) << rate.error().text();
+  EXPECT_EQ(job.asked(), 1U);
   EXPECT_NEAR(predicted(job, *rate), job.all_s(), 0.1 * job.all_s());
 }
 
