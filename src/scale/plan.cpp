@@ -87,44 +87,47 @@ double learnt_of_all(const std::vector<Learnt> &trial, double total) {
 
 /// CPU seconds of a trial: what tells the cost of most jobs, and what is too much.
 constexpr double enough_s = 1.25, at_most_s = 20;
+/// A piece that is not asked for twice.
+constexpr double dear_s = 20;
 
 /// Asks a job for pieces of it.
 class Trial {
 public:
   Trial(jobs::RangedJob &job, const jobs::Monitor &monitor) : job_(job), monitor_(monitor) {}
 
-  /// Four pieces of that length, or fewer that are dear, and each of them again at once as long as
-  /// that is cheaper: what the first time costs more is learnt, masks for the most part, and is not
-  /// paid for every row.
+  /// Four pieces of that length, or fewer where they are much of the job, and each of them again at
+  /// once as long as that is cheaper: what the first time costs more is learnt, masks for the most
+  /// part, and is not paid for every row.
   Result<Sampled> round(std::size_t length) {
     const auto places = static_cast<double>(job_.total() - length + 1);
     Sampled first, again;
-    for (std::size_t n = 0; n < 4; ++n) {
+    bool is_any_twice = false;
+    for (std::size_t n = 0; n < 4 && (n == 0 || may_go_on()); ++n) {
       const jobs::IndexRange piece{static_cast<std::size_t>(spread_point(++pieces_) * places),
                                    length};
       UMOV_ASSIGN(once, ask(piece));
       add(once, first);
+      add(once, raw_);
       double more = 0;
-      if (learns_ && may_ask(once, once)) {
+      if (learns_ && once.cpu_s < dear_s && may_go_on()) {
+        is_any_twice = true;
         UMOV_ASSIGN(twice, ask(piece));
         more = std::max(0.0, once.cpu_s - twice.cpu_s);
         once.cpu_s = std::min(once.cpu_s, twice.cpu_s);
       }
       add(once, again);
       learnt_.push_back({learnt_.back().units + once.units, learnt_.back().cpu_s + more});
-      if (!may_ask(once, again))
-        break;
     }
-    learns_ = learns_ && again.cpu_s < 0.95 * first.cpu_s;
+    learns_ = learns_ && (!is_any_twice || again.cpu_s < 0.95 * first.cpu_s);
     return again;
   }
   /// The first time still costs more.
   [[nodiscard]] bool learns() const { return learns_; }
-  /// Another piece as dear as `piece` leaves the trial below half of the whole job, of which `some`
-  /// is a part: a few curves shall not be answered twice before the first counts.
-  [[nodiscard]] bool may_ask(const Sampled &piece, const Sampled &some) const {
-    const double whole_s = some.cpu_s / some.units * static_cast<double>(job_.total());
-    return spent_ + piece.cpu_s <= std::max(enough_s, std::min(at_most_s, whole_s / 2));
+  /// The trial is below a quarter of the job, at what its rows have cost so far with all that they
+  /// learnt: a few curves shall not be answered twice before the first counts.
+  [[nodiscard]] bool may_go_on() const {
+    const double part = raw_.units / static_cast<double>(job_.total());
+    return spent_ < std::max(enough_s, raw_.cpu_s / part / 4);
   }
   /// CPU seconds so far.
   [[nodiscard]] double spent() const { return spent_; }
@@ -151,6 +154,7 @@ private:
   const jobs::Monitor &monitor_;
   Diagnostics told_at_the_begin_;
   std::vector<Learnt> learnt_{{}};
+  Sampled raw_; ///< all pieces, each when it was first asked for
   std::size_t pieces_ = 0;
   double spent_ = 0;
   bool learns_ = true;
@@ -173,7 +177,8 @@ Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monit
     const double with_next_s = trial.spent() + 2 * (trial.spent() - spent);
     const bool is_enough =
         trial.spent() > enough_s || (!trial.learns() && with_next_s > too_long_s);
-    if ((is_enough && is_settled) || !trial.may_ask({}, now) || length * 8 > total)
+    if ((is_enough && is_settled) || trial.spent() > at_most_s || !trial.may_go_on() ||
+        length * 8 > total)
       break;
     length = std::min(total, length * 2);
   }

@@ -12,10 +12,9 @@ from astropy.table import Table
 
 from conftest import ROOT, UMOV, processor_s_of_children
 from test_identify import NAMES, library  # noqa: F401
-from test_invert import TRUTHS, observe, scene  # noqa: F401
+from test_invert import KNOWN, TRUTHS, observe, scene  # noqa: F401
 from test_track import TRUTH
 
-KNOWN = ("--slope-sd", "0", "--reflectance-sd", "0", "--haze-sd", "0")
 POSE = ("modes", "set95", "samples", "twins", "fit")
 
 
@@ -31,7 +30,7 @@ def write_curves(umov, scene, folder, truths, step):
 
 @pytest.fixture
 def curves(umov, scene, tmp_path):
-    """Curves that tell their attitude, in two seconds each."""
+    """Curves that tell their attitude, quick to answer."""
     return write_curves(umov, scene, tmp_path, [TRUTHS[0], TRUTH, TRUTHS[2]], 30)
 
 
@@ -43,7 +42,7 @@ def short_curves(umov, scene, tmp_path):
 
 def asked(curves):
     """Materials that are known: what many curves share does not depend on it, and each takes a third of the time."""
-    return ["invert", "pose", *curves, "--scenario", "fit.toml", "--grid", "2000", "--visibility", "masks", *KNOWN]
+    return ["invert", "pose", *curves, "--scenario", "fit.toml", "--grid", "2000", *KNOWN]
 
 
 def error_of(done):

@@ -12,9 +12,8 @@ import pytest
 from astropy.table import Table
 
 from conftest import ROOT, UMOV, Outcome
-from test_invert import CUBESAT, SCENE, apart, observe, spinning
+from test_invert import CUBESAT, KNOWN, SCENE, apart, observe, spinning
 
-KNOWN = ["--visibility", "masks", "--slope-sd", "0", "--reflectance-sd", "0", "--haze-sd", "0"]
 TRUTH = [0.406, 0.396, -0.231, 0.791]  # whose first half tells it
 TABLES = ("modes.ecsv", "track.ecsv", "fit.ecsv", "state.json", "verdict.json", "report.html")
 
@@ -368,7 +367,7 @@ def test_a_start_that_allows_much_is_followed_by_its_samples(made):
 
 def test_counts_are_followed(made, tmp_path):
     """As umov observe records them, each channel by itself; data by rays and the simulator's own noise. The start is
-    about the light of the first half, which is passed over: counts would take it two minutes (test_invert_counts.py has them)."""
+    about the light of the first half without noise, which is passed over: counts would take it two minutes (test_invert_counts.py has them)."""
     shutil.copy(made / "cubesat.obj", tmp_path)
     for name, method in (("truth", "rays"), ("fit", "masks")):
         write_scene(tmp_path, name, method, 8, TRUTH)

@@ -20,9 +20,9 @@ struct Plan {
 };
 
 /// Asks the job for some of its indices, spread over all of them, until their cost has settled: a
-/// second or two of one core, up to twenty where indices are dear, but half of the whole job at
-/// most, or one index where that is more. What is learnt meanwhile, masks, is told apart from
-/// what every index costs: pieces are asked for twice as long as that is cheaper.
+/// second or two of one core, up to twenty where indices are dear, and of a job of few dear ones
+/// about a quarter, or one. What is learnt meanwhile, masks, is told apart from what every index
+/// costs: pieces are asked for twice as long as that is cheaper.
 Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monitor &monitor);
 
 /// How long a shard is: a twentieth of the wall time, within 10 and 120 s of a worker; at most a

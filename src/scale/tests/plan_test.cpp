@@ -95,7 +95,15 @@ TEST(Plans, OfRowsThatLearnNothingAskForThemOnce) {
   EXPECT_NEAR(predicted(job, *rate), job.all_s(), 0.1 * job.all_s());
 }
 
-/// As curves that are answered one by one: a second one would be half of the job and more.
+TEST(Plans, SeeWhatIsLearntWhereItIsNearlyAll) {
+  Spending job(2000, 1e-4, 300, 1e-2); // 3 s of what is learnt beside .2 s of rows
+  const auto rate = measure(job, 0, {});
+  ASSERT_TRUE(rate) << rate.error().text();
+  EXPECT_NEAR(rate->cpu_s, 1e-4, 0.5e-4);
+  EXPECT_NEAR(predicted(job, *rate), job.all_s(), 0.3 * job.all_s());
+}
+
+/// As curves that are answered one by one: one is a quarter of the job and more.
 TEST(Plans, OfAFewDearRowsAskForOne) {
   Spending job(3, 1.5, 0, 0);
   const auto rate = measure(job, 0, {});
