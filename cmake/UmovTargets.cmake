@@ -143,7 +143,7 @@ function(umov_tests name)
   add_executable(${target} ${arg_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE umov_flags ${arg_LIBRARIES} GTest::gtest_main)
-  if(UMOV_COMMON_HEADERS)
+  if(UMOV_COMMON_HEADERS) # definitions of fmt's target must be the same here and there
     target_link_libraries(${target} PRIVATE fmt::fmt tl::expected)
     target_precompile_headers(${target} REUSE_FROM umov_test_headers)
   endif()

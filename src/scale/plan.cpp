@@ -85,10 +85,8 @@ double learnt_of_all(const std::vector<Learnt> &trial, double total) {
   return last.cpu_s * part(total, low) / part(last.units, low);
 }
 
-/// CPU seconds of a trial: what tells the cost of most jobs, and what is too much.
-constexpr double enough_s = 1.25, at_most_s = 20;
-/// A piece that is not asked for twice.
-constexpr double dear_s = 20;
+/// CPU seconds of a trial that tell the cost of most jobs.
+constexpr double enough_s = 1.25;
 
 /// Asks a job for pieces of it.
 class Trial {
@@ -126,8 +124,8 @@ public:
   /// The trial is below a quarter of the job, at what its rows have cost so far with all that they
   /// learnt: a few curves shall not be answered twice before the first counts.
   [[nodiscard]] bool may_go_on() const {
-    const double part = raw_.units / static_cast<double>(job_.total());
-    return spent_ < std::max(enough_s, raw_.cpu_s / part / 4);
+    const double whole_s = raw_.cpu_s / raw_.units * static_cast<double>(job_.total());
+    return spent_ < std::max(enough_s, whole_s / 4);
   }
   /// CPU seconds so far.
   [[nodiscard]] double spent() const { return spent_; }
@@ -136,6 +134,8 @@ public:
   }
 
 private:
+  static constexpr double dear_s = 20; ///< a piece that is not asked for twice
+
   static void add(const Sampled &one, Sampled &all) {
     all.cpu_s += one.cpu_s;
     all.bytes += one.bytes;
@@ -163,7 +163,7 @@ private:
 } // namespace
 
 Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monitor &monitor) {
-  constexpr double too_long_s = 1.5, settled = 0.15;
+  constexpr double too_long_s = 1.5, at_most_s = 20, settled = 0.15;
   const std::size_t total = job.total();
   std::size_t length = std::max<std::size_t>(1, std::min(total / 8, job.grain() / 128));
   Rate out;

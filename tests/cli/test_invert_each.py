@@ -54,22 +54,21 @@ def data(path):
 
 
 def test_each_curve_has_the_answer_that_it_has_alone(umov, short_curves, tmp_path):
-    curves = short_curves
-    done = umov(*asked(curves), "--each", "-o", "each")
+    done = umov(*asked(short_curves), "--each", "-o", "each")
     assert done.code == 3, done.err  # one has no answer
     assert "1 of 4 curves have no answer" in done.err and "bad.csv:2" in done.err
     table = Table.read(tmp_path / "each/curves.ecsv")
-    assert list(table["curve"]) == curves
+    assert list(table["curve"]) == short_curves
     assert table["verdict"][1] == "failed" and "bad.csv:2" in table["problem"][1]
     assert "1 of 4 curves have no answer" in (tmp_path / "each/curves.ecsv").read_text()
     assert not table["answer"][1] and all("chi-square" in table["answer"][k] for k in (0, 2, 3))
     inputs = {one["path"] for one in json.loads((tmp_path / "each/manifest.json").read_text())["inputs"]}
     assert {"a.csv", "b.csv", "c.csv"} <= inputs and any(name.endswith(".tle") for name in inputs)
     for k in (0, 2, 3):
-        alone = umov(*asked([curves[k]]), "-o", "alone", "--force")
+        alone = umov(*asked([short_curves[k]]), "-o", "alone", "--force")
         assert alone.code in (0, 4), alone.err
         for name in POSE:
-            rows = [line.split(" ", 1)[1] for line in data(tmp_path / f"each/{name}.ecsv")[1:] if line.startswith(curves[k] + " ")]
+            rows = [line.split(" ", 1)[1] for line in data(tmp_path / f"each/{name}.ecsv")[1:] if line.startswith(short_curves[k] + " ")]
             assert rows == data(tmp_path / f"alone/{name}.ecsv")[1:], name
 
 

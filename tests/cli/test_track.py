@@ -367,7 +367,7 @@ def test_a_start_that_allows_much_is_followed_by_its_samples(made):
 
 def test_counts_are_followed(made, tmp_path):
     """As umov observe records them, each channel by itself; data by rays and the simulator's own noise. The start is
-    about the light of the first half without noise, which is passed over: counts would take it two minutes (test_invert_counts.py has them)."""
+    about the noiseless light of the first half, whose counts are passed over; test_invert_counts.py has answers about counts."""
     shutil.copy(made / "cubesat.obj", tmp_path)
     for name, method in (("truth", "rays"), ("fit", "masks")):
         write_scene(tmp_path, name, method, 8, TRUTH)
