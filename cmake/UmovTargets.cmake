@@ -1,6 +1,6 @@
 # One grammar for all modules:
 #   umov_module(NAME SOURCES a.cpp ... PUBLIC umov::core ... PRIVATE fmt::fmt ...)
-#   umov_tests(NAME SOURCES a_test.cpp ... LABEL unit LIBRARIES umov::optics ...)
+#   umov_tests(NAME SOURCES a_test.cpp ... LABEL unit LIBRARIES umov::optics ... LONG Suite.Test ...)
 #   umov_fuzz_target(NAME LIBRARIES umov::io_mesh ... SEEDS data/mesh ...)
 #   umov_embed(TARGET SYMBOL FILE): the bytes of FILE in the binary, read with umov/core/embedded.h
 
@@ -73,10 +73,11 @@ function(umov_quick_to_compile)
 endfunction()
 
 # umov_in_pieces(FILES TARGET ...): so many sources as one, where each spends its time on instantiating what the others do
-# too (CLI11, Eigen). Other builds compile them one by one, so that every file keeps its own includes.
+# too (CLI11, Eigen). Builds of which nothing is asked in a hurry (dev, all of sanitize) compile them one by one, so that
+# every file keeps its own includes.
 function(umov_in_pieces files)
   foreach(target IN LISTS ARGN)
-    if(TARGET ${target} AND UMOV_QUICK_TO_COMPILE AND CMAKE_BUILD_TYPE STREQUAL Release)
+    if(TARGET ${target} AND UMOV_QUICK_TO_COMPILE AND (UMOV_SANITIZE_MODULES OR CMAKE_BUILD_TYPE STREQUAL Release))
       set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
     endif()
   endforeach()
@@ -138,7 +139,7 @@ function(umov_tests name)
   if(NOT UMOV_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "" "LABEL" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL" "SOURCES;LIBRARIES;LONG" ${ARGN})
   set(target umov_${name}_tests)
   add_executable(${target} ${arg_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
@@ -150,8 +151,27 @@ function(umov_tests name)
   target_compile_definitions(${target} PRIVATE UMOV_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                $<$<BOOL:${UMOV_SANITIZE}>:UMOV_SANITIZED>)
   include(GoogleTest)
-  gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
+  list(JOIN arg_LONG ":" long)
+  set(not_long "")
+  if(long)
+    set(not_long TEST_FILTER -${long})
+    gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 TEST_FILTER ${long}
+                         TEST_LIST ${target}_LONG PROPERTIES LABELS long)
+  endif()
+  gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 ${not_long}
                        PROPERTIES LABELS ${arg_LABEL})
+  if(arg_LABEL STREQUAL long)
+    umov_only_for_long_tests(${target})
+  endif()
+endfunction()
+
+# umov_only_for_long_tests(TARGET): built for `./test --all` alone (the target umov_long_tests).
+function(umov_only_for_long_tests target)
+  set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  if(NOT TARGET umov_long_tests)
+    add_custom_target(umov_long_tests)
+  endif()
+  add_dependencies(umov_long_tests ${target})
 endfunction()
 
 # tests/fuzz/NAME.cpp: a fuzzer with UMOV_FUZZ, else a program that runs over the files named. Its test

@@ -157,7 +157,7 @@ OBJECTS = {
 }
 
 
-@pytest.mark.parametrize("which", OBJECTS)
+@pytest.mark.parametrize("which", [which if which == "box_wing" else pytest.param(which, marks=pytest.mark.long) for which in OBJECTS])
 def test_stokes_agree_with_mitsubas_path_tracer(umov, tmp_path, which):
     """tests/data/bounces: I, Q, U and V of 40 geometries at 1, 2 and 5 surfaces, chi-square at 1 %."""
     mesh, groups = OBJECTS[which]

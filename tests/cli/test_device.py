@@ -301,6 +301,7 @@ def ball(folder):
     return within
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("curve", [[WHITE]], indirect=True)
 def test_an_attitude_by_the_light_of_a_card(umov, curve, settings, tmp_path):
     """The same evidence, and the best attitude of each in the other's set.
@@ -371,6 +372,7 @@ def test_a_library_of_the_processor_is_none_of_a_card(umov, scenario, settings, 
     assert state("cpu") == "made"
 
 
+@pytest.mark.long
 def test_a_library_of_cards_is_searched_by_the_processor_without_a_warning(umov, curve, settings, monkeypatch):
     settings()
     observed, name = curve

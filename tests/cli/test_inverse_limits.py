@@ -45,7 +45,7 @@ def flat(path, with_errors):
     path.write_text("time_utc,band,flux" + (",flux_err" if with_errors else "") + "\n" + "\n".join(rows) + "\n")
 
 
-@pytest.mark.parametrize("question", QUESTIONS)
+@pytest.mark.parametrize("question", [pytest.param(q, marks=pytest.mark.long) if q == "pose" else q for q in QUESTIONS])
 def test_constant_light_determines_nothing(ask, tmp_path, question):
     for seed, snr in enumerate((3, 20)):
         constant(tmp_path / "obs.csv", snr, seed)

@@ -98,6 +98,7 @@ def in_set(folder, truth):
     return any(apart(truth, [r["qw"], r["qx"], r["qy"], r["qz"]]) <= r["radius_deg"] for r in table)
 
 
+@pytest.mark.long
 def test_blind_attitudes_are_found_or_lie_in_the_set(umov, scene, tmp_path):
     near = inside = 0
     for k, truth in enumerate(TRUTHS):
@@ -202,6 +203,7 @@ def test_materials_that_are_nearly_known_give_the_answer_of_known_ones(umov, sce
     assert all(one["unit"] == "deg" and abs(one["value"]) < 1e-3 for one in tilts)
 
 
+@pytest.mark.long
 def test_other_materials_widen_the_set_until_it_holds_the_truth(umov, scene, tmp_path):
     """Lobes 30 % wider or narrower and paint 15 % darker than the fitted ones: 1.5 standard deviations."""
     text = (ROOT / "data/materials/aluminium_anodized.toml").read_text().replace("alpha = 0.25", "alpha = 0.325")
@@ -224,6 +226,7 @@ def test_other_materials_widen_the_set_until_it_holds_the_truth(umov, scene, tmp
     assert inside >= 2  # of 3 at 95 %
 
 
+@pytest.mark.long
 def test_another_object_is_no_fit(umov, scene, tmp_path):
     assert umov("run", scene(TRUTHS[2], "rays", "truth"), "-q").code == 0
     observe(tmp_path, "obs.csv", 200, 4)
@@ -340,6 +343,7 @@ def constant(path, snr, seed, bands=("nm:425", "nm:550", "nm:650")):
     path.write_text("time_utc,band,flux,flux_err\n" + "\n".join(rows) + "\n")
 
 
+@pytest.mark.long
 def test_constant_light_is_never_a_sure_attitude(umov, scene, tmp_path):
     for seed, (snr, known) in enumerate([(3, KNOWN), (20, [])]):
         constant(tmp_path / "obs.csv", snr, seed)

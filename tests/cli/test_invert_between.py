@@ -36,6 +36,7 @@ def ask(umov, folder, *words):
 HALF_TURN = [-TRUTH[3], TRUTH[2], -TRUTH[1], TRUTH[0]]
 
 
+@pytest.mark.long
 def test_an_attitude_is_found_by_light_that_touched_several_surfaces(umov, scene, tmp_path):
     assert umov("mesh", "make", "box-wing", "--facets", 600, "-o", "wing.obj", "-q").code == 0
     truth = body(umov, scene, tmp_path, TRUTH, "rays", "truth")
@@ -55,6 +56,7 @@ def test_an_attitude_is_found_by_light_that_touched_several_surfaces(umov, scene
     assert all((tmp_path / "answer" / name).read_bytes() == content for name, content in bytes_of.items())
 
 
+@pytest.mark.long
 def test_chains_are_drawn_once_for_all_materials(umov, scene, tmp_path):
     """Of four metals on the panels, one of them true; each candidate took a drawing of its own."""
     assert umov("mesh", "make", "box-wing", "--facets", 600, "-o", "wing.obj", "-q").code == 0

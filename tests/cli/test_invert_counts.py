@@ -28,6 +28,7 @@ def record(umov, scene, tmp_path):
     return run
 
 
+@pytest.mark.long
 def test_counts_say_what_their_stokes_parameters_say(umov, record, tmp_path):
     """S/N of 30 and more: attitudes agree within their errors, and the truth lies in the set of the counts."""
     record(2.0)
@@ -49,6 +50,7 @@ def test_counts_say_what_their_stokes_parameters_say(umov, record, tmp_path):
     assert a["scale"] == pytest.approx(b["scale"], rel=0.02)
 
 
+@pytest.mark.long
 def test_brightness_alone_is_that_of_the_reduced_sets(umov, record):
     """One channel an exposure says nothing of I by itself where q and u are left aside."""
     record(2.0, instrument="usafa16", cadence_s=5)

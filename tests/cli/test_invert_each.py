@@ -89,7 +89,7 @@ def plain(umov, curves, tmp_path, answered):
     return answered["done"]
 
 
-@pytest.mark.parametrize("per_shard", [1, 3])
+@pytest.mark.parametrize("per_shard", [pytest.param(1, marks=pytest.mark.long), 3])
 def test_curves_in_parts_are_the_plain_ones(umov, curves, plain, tmp_path, per_shard):
     command = [*asked(curves), "--each"]
     assert plain.code == 3
@@ -141,6 +141,7 @@ def test_shards_of_curves_are_its_rows(umov, curves, plain, tmp_path):
     assert rows == data(tmp_path / "plain/modes.ecsv")[1:]
 
 
+@pytest.mark.long
 def test_identities_in_parts_are_the_plain_ones(umov, short_curves, library, tmp_path):
     command = ["identify", *short_curves, "--each", "--library", "lib", "--scenario", "place.toml"]
     plain = umov(*command, "-o", "plain")
@@ -155,6 +156,7 @@ def test_identities_in_parts_are_the_plain_ones(umov, short_curves, library, tmp
         assert (tmp_path / f"{name}.ecsv").read_bytes() == (tmp_path / f"plain/{name}.ecsv").read_bytes(), name
 
 
+@pytest.mark.long
 def test_objects_are_made_ready_once(umov, short_curves, library, tmp_path):
     """A mesh that goes away when the first curve is answered is missed by none of the others, whose answers are those that
     they have alone."""

@@ -14,7 +14,8 @@ sys.path.insert(0, str(ROOT / "tools/site"))
 import paper_pages  # noqa: E402
 
 
-@pytest.fixture(scope="module")
+# Long: tools/docs remakes the paper, too, and asks whether its checks hold.
+@pytest.fixture(scope="module", params=[pytest.param("whole", marks=pytest.mark.long)])
 def paper():
     """The folder of one whole run of this build, which the documentation site shows too."""
     return paper_pages.made(UMOV)

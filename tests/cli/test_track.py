@@ -365,6 +365,7 @@ def test_a_start_that_allows_much_is_followed_by_its_samples(made):
     assert json.loads(done.out)["verdict"] == "undetermined"
 
 
+@pytest.mark.long
 def test_counts_are_followed(made, tmp_path):
     """As umov observe records them, each channel by itself; data by rays and the simulator's own noise. The start is
     about the noiseless light of the first half, whose counts are passed over; test_invert_counts.py has answers about counts."""

@@ -57,9 +57,11 @@ def pictures(folder: pathlib.Path) -> list[pathlib.Path]:
 def markdown(folder: pathlib.Path, place: str) -> str:
     """A page of verdicts, each with its pictures, which stand in `place`."""
     verdicts, checks = _rows(folder / "verdicts.ecsv"), _rows(folder / "checks.ecsv")
-    held = sum(check["holds"] == "yes" for check in checks)
+    missed = [f"{check['figure']}, {check['number']}: {check['found']}" for check in checks if check["holds"] != "yes"]
+    if missed:
+        raise RuntimeError("umov paper: these numbers are not their independent values: " + "; ".join(missed))
     out = ("# The paper remade\n*Real Time Polarization Light Curves for Space Debris and Satellites*, figure by figure and claim by\n"
-           f"claim, as this build remade it with `umov paper`: {len(verdicts)} of them, {held} of {len(checks)} numbers within the\n"
+           f"claim, as this build remade it with `umov paper`: {len(verdicts)} of them, {len(checks)} numbers within the\n"
            "tolerance of their independent value. [What was changed](theory/paper.md) in the paper's equations, and why.\n\n"
            "```{raw} html\n<p><a href=\"paper/index.html\">The same as one page</a>, with what the paper says, how each was\n"
            "done, every check and figures to look into.</p>\n```\n\n")
