@@ -193,6 +193,7 @@ AGENA, HST = EXAMPLES / "agena_maui.toml", EXAMPLES / "hst_maui.toml"
 GREEN = {"bands.set": ["nm:550"]}
 
 
+@pytest.mark.long
 def test_tracking(command, tmp_path):
     """From the command's folder and from an answer in memory; then on from what it left."""
     still = {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20, **GREEN}
@@ -225,9 +226,10 @@ def test_tracking(command, tmp_path):
 
 
 @pytest.mark.parametrize(("words", "scenario", "changes", "ours"), [
-    (["pose", "--grid", 1000, "--outliers", 0.05, "--floor", 0.03], AGENA,
-     {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 40},
-     lambda light: umov.invert_pose(light, AGENA, set=GREEN, fit=umov.Fit(grid=1000, outliers=0.05, floor=0.03))),
+    pytest.param(
+        ["pose", "--grid", 1000, "--outliers", 0.05, "--floor", 0.03], AGENA,
+        {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 40},
+        lambda light: umov.invert_pose(light, AGENA, set=GREEN, fit=umov.Fit(grid=1000, outliers=0.05, floor=0.03)), marks=pytest.mark.long),
     # Materials that are known: each answer takes a third of the time.
     (["spin", "--period", 23.7, "--no-aliases", "--axis", "x", "--grid", 1000, "--intensity-only", "--slope-sd", 0, "--reflectance-sd", 0,
       "--haze-sd", 0], AGENA,
