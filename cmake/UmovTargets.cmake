@@ -9,7 +9,7 @@ option(UMOV_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 set(UMOV_SANITIZE "" CACHE STRING "address (with undefined behaviour) or thread; empty: none")
 set(UMOV_SANITIZE_MODULES "" CACHE STRING
     "Only these modules with the sanitizer, all others as fast as they compile; empty: all of them")
-option(UMOV_QUICK_TO_COMPILE "Release: common headers precompiled, and -O1 where nothing is computed" ON)
+option(UMOV_QUICK_TO_COMPILE "Release: common headers precompiled, sources joined (of sanitize-gate, too), and -O1 where nothing is computed" ON)
 option(UMOV_FOR_THIS_MACHINE "Light's loops for this machine's instruction set and a slow one for all others" OFF)
 option(UMOV_FUZZ "Build tests/fuzz as fuzzers (clang): libFuzzer, coverage of the readers" OFF)
 

@@ -20,7 +20,7 @@ ENDS = {0, 3, 4, 5, 6, 130}
 
 
 def times(few, many):
-    """Repetitions in ./test, and in tests/faults/run --full."""
+    """Repetitions in tests/faults/run, and in tests/faults/run --full."""
     return many if FULL else few
 
 

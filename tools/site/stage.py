@@ -107,8 +107,7 @@ def put_command_line(pages: Pages, umov: str) -> None:
 
 def put_paper(pages: Pages, umov: str) -> None:
     """Verdicts with their pictures, and the page that the command wrote."""
-    # The tests make it anew after every change of the library, which takes minutes; a page may be of the day before.
-    folder = paper_pages.made(umov, is_fresh=False)
+    folder = paper_pages.made(umov)
     pages.put("paper.md", paper_pages.markdown(folder, "paper_pictures"))
     for picture in paper_pages.pictures(folder):
         pages.put(f"paper_pictures/{picture.name}", picture.read_bytes())
