@@ -160,18 +160,13 @@ function(umov_tests name)
   endif()
   gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 ${not_long}
                        PROPERTIES LABELS ${arg_LABEL})
-  if(arg_LABEL STREQUAL long)
-    umov_only_for_long_tests(${target})
+  if(arg_LABEL STREQUAL long) # built for `./test --all` alone
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+    if(NOT TARGET umov_long_tests)
+      add_custom_target(umov_long_tests)
+    endif()
+    add_dependencies(umov_long_tests ${target})
   endif()
-endfunction()
-
-# umov_only_for_long_tests(TARGET): built for `./test --all` alone (the target umov_long_tests).
-function(umov_only_for_long_tests target)
-  set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
-  if(NOT TARGET umov_long_tests)
-    add_custom_target(umov_long_tests)
-  endif()
-  add_dependencies(umov_long_tests ${target})
 endfunction()
 
 # tests/fuzz/NAME.cpp: a fuzzer with UMOV_FUZZ, else a program that runs over the files named. Its test

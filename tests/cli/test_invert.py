@@ -343,7 +343,6 @@ def constant(path, snr, seed, bands=("nm:425", "nm:550", "nm:650")):
     path.write_text("time_utc,band,flux,flux_err\n" + "\n".join(rows) + "\n")
 
 
-@pytest.mark.long
 def test_constant_light_is_never_a_sure_attitude(umov, scene, tmp_path):
     for seed, (snr, known) in enumerate([(3, KNOWN), (20, [])]):
         constant(tmp_path / "obs.csv", snr, seed)
