@@ -151,16 +151,16 @@ function(umov_tests name)
   target_compile_definitions(${target} PRIVATE UMOV_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                $<$<BOOL:${UMOV_SANITIZE}>:UMOV_SANITIZED>)
   include(GoogleTest)
-  list(JOIN arg_LONG ":" long)
+  list(JOIN arg_LONG ":" long_ones)
   set(not_long "")
-  if(long)
-    set(not_long TEST_FILTER -${long})
-    gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 TEST_FILTER ${long}
+  if(long_ones)
+    set(not_long TEST_FILTER -${long_ones})
+    gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 TEST_FILTER ${long_ones}
                          TEST_LIST ${target}_LONG PROPERTIES LABELS long)
   endif()
   gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 ${not_long}
                        PROPERTIES LABELS ${arg_LABEL})
-  if(arg_LABEL STREQUAL long) # built for `./test --all` alone
+  if(arg_LABEL STREQUAL "long") # built for `./test --all` alone
     set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
     if(NOT TARGET umov_long_tests)
       add_custom_target(umov_long_tests)
