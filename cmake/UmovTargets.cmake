@@ -73,7 +73,7 @@ function(umov_quick_to_compile)
 endfunction()
 
 # umov_in_pieces(FILES TARGET ...): so many sources as one, where each spends its time on instantiating what the others do
-# too (CLI11, Eigen). Builds of which nothing is asked in a hurry (dev, all of sanitize) compile them one by one, so that
+# too (CLI11, Eigen, GoogleTest). Builds of which nothing is asked in a hurry (dev, all of sanitize) compile them one by one, so that
 # every file keeps its own includes.
 function(umov_in_pieces files)
   foreach(target IN LISTS ARGN)
@@ -150,6 +150,7 @@ function(umov_tests name)
   endif()
   target_compile_definitions(${target} PRIVATE UMOV_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                $<$<BOOL:${UMOV_SANITIZE}>:UMOV_SANITIZED>)
+  umov_in_pieces(4 ${target})
   include(GoogleTest)
   list(JOIN arg_LONG ":" long_ones)
   set(not_long "")

@@ -1,4 +1,4 @@
-#include "core/tests/anchors.h"
+#include "atmosphere/tests/anchor.h"
 
 #include <cmath>
 #include <fstream>
@@ -12,8 +12,6 @@
 namespace umov {
 namespace {
 
-/// Anchors have nine digits.
-double of(const std::string &name) { return Anchors("observing_air").row({name.c_str()})["value"]; }
 void expect_same(double found, const std::string &name) {
   EXPECT_NEAR(found, of(name), 1e-8 * std::abs(of(name))) << name;
 }

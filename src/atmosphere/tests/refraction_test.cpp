@@ -1,4 +1,4 @@
-#include "core/tests/anchors.h"
+#include "atmosphere/tests/anchor.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -11,8 +11,6 @@ namespace {
 constexpr double arc_seconds = 3600;
 constexpr SurfaceAir air{693.28, 293.15, 10.67};
 const Angle at_30 = Angle::degrees(30); // 60 deg from the zenith
-
-double of(const char *name) { return Anchors("observing_air").row({name})["value"]; }
 
 TEST(Refraction, FollowsFilippenko) { // nine digits
   EXPECT_NEAR(refraction(550, at_30, air).degrees() * arc_seconds, of("refraction_60"), 1e-7);
@@ -54,8 +52,7 @@ TEST(Refraction, StaysFiniteAtTheHorizon) {
 
 TEST(Refraction, AirMassIsThatOfTheApparentAltitude) {
   for (const int altitude : {60, 30, 10, 5}) // nine digits
-    EXPECT_NEAR(airmass(Angle::degrees(altitude)),
-                of(("airmass_" + std::to_string(altitude)).c_str()), 6e-8);
+    EXPECT_NEAR(airmass(Angle::degrees(altitude)), of("airmass_" + std::to_string(altitude)), 6e-8);
   // At 10 deg the true altitude would give half a per cent too much.
   const Angle seen = apparent_altitude(550, Angle::degrees(10), air);
   EXPECT_NEAR(airmass(seen) / airmass(Angle::degrees(10)) - 1, -0.0056, 5e-4);

@@ -1,4 +1,4 @@
-#include "core/tests/anchors.h"
+#include "atmosphere/tests/anchor.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -6,8 +6,6 @@
 
 namespace umov {
 namespace {
-
-double of(const char *name) { return Anchors("observing_air").row({name})["value"]; }
 
 TEST(Scintillation, FollowsOsborn) { // nine digits
   EXPECT_NEAR(scintillation_sd({3058, 1.5}, .2794, 1, 1.5), of("scintillation_c11"), 1e-10);

@@ -1,4 +1,4 @@
-#include "core/tests/anchors.h"
+#include "atmosphere/tests/anchor.h"
 
 #include <gtest/gtest.h>
 #include <umov/atmosphere/sky_brightness.h>
@@ -7,7 +7,6 @@
 namespace umov {
 namespace {
 
-double of(const std::string &name) { return Anchors("observing_air").row({name.c_str()})["value"]; }
 Vec3<Enu> at(double azimuth, double altitude) {
   return horizontal_direction(Angle::degrees(azimuth), Angle::degrees(altitude));
 }

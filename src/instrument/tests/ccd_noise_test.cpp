@@ -28,7 +28,7 @@ std::vector<Noise> noise_by_galsim() {
 struct Moments {
   double mean = 0, variance = 0;
 };
-Moments of(const std::vector<double> &numbers) {
+Moments moments_of(const std::vector<double> &numbers) {
   Moments out;
   const auto count = static_cast<double>(numbers.size());
   for (const double x : numbers)
@@ -60,8 +60,8 @@ TEST(CcdNoise, IsThatOfGalsim) {
     const double none = 0, sky = n.electrons;
     const RawFrame of_sky = draw_frame(d, dark, {sky, sky, sky, sky}, 1, {41, 0, 0, 0, 0});
     const RawFrame of_light = draw_frame(d, lit, {none, none, none, none}, 1, {42, 0, 0, 0, 0});
-    expect_same(of({of_sky.adu.begin(), of_sky.adu.end()}), n, d.bias_adu);
-    expect_same(of({of_light.adu.begin(), of_light.adu.end()}), n, d.bias_adu);
+    expect_same(moments_of({of_sky.adu.begin(), of_sky.adu.end()}), n, d.bias_adu);
+    expect_same(moments_of({of_light.adu.begin(), of_light.adu.end()}), n, d.bias_adu);
   }
 }
 

@@ -10,8 +10,8 @@ namespace {
 
 /// Measurements of u_scat with an error of 1.4 % (SNR 100 in I), while the plane turns by so many
 /// degrees.
-ObservedCurve pass(double q0, double u0, std::uint64_t seed, std::size_t count = 120,
-                   double turn_deg = 100) {
+ObservedCurve polarized_pass(double q0, double u0, std::uint64_t seed, std::size_t count = 120,
+                             double turn_deg = 100) {
   ObservedCurve out;
   out.bands = {"a"};
   for (std::size_t k = 0; k < count; ++k) {
@@ -37,8 +37,8 @@ TEST(NullTest, InstrumentalPolarizationRaisesTheFlagAndACleanPassDoesNot) {
   constexpr int passes = 1000;
   double mean = 0;
   for (std::uint64_t seed = 0; seed < passes; ++seed) {
-    clean += null_test(pass(0, 0, seed)).is_flagged() ? 1 : 0;
-    const NullTest found = null_test(pass(0.01, 0, seed));
+    clean += null_test(polarized_pass(0, 0, seed)).is_flagged() ? 1 : 0;
+    const NullTest found = null_test(polarized_pass(0.01, 0, seed));
     dirty += found.is_flagged() ? 1 : 0;
     mean += found.q0 / passes;
   }
@@ -57,13 +57,13 @@ TEST(NullTest, HalfAPerCentTakesThreeTimesAsManyNumbers) {
        {std::pair{std::size_t{120}, 0.452}, {std::size_t{360}, 0.966}}) {
     int flagged = 0;
     for (std::uint64_t seed = 0; seed < passes; ++seed)
-      flagged += null_test(pass(0.005, 0, 7000 + seed, count, 180)).is_flagged() ? 1 : 0;
+      flagged += null_test(polarized_pass(0.005, 0, 7000 + seed, count, 180)).is_flagged() ? 1 : 0;
     EXPECT_NEAR(flagged / 1000.0, share, 4 * std::sqrt(share * (1 - share) / passes));
   }
 }
 
 TEST(NullTest, APlaneThatStaysTellsOnlyOneOfThem) {
-  ObservedCurve curve = pass(0, 0, 1);
+  ObservedCurve curve = polarized_pass(0, 0, 1);
   for (ObservedEpoch &e : curve.epochs)
     e.scattering_axis_rad = 0.3;
   EXPECT_FALSE(null_test(curve).is_flagged());

@@ -11,7 +11,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double degree = pi / 180;
+using inverse::degree;
 
 /// Light of three bands that is as linear in small turns as directions are: a part of one component
 /// of the Sun or the observer each. No body has it, but a filter does not know.

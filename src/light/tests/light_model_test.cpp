@@ -14,7 +14,7 @@ namespace {
 
 using namespace cases;
 
-std::vector<Pose> poses_of(std::size_t count) {
+std::vector<Pose> many_poses(std::size_t count) {
   std::vector<Pose> out;
   for (std::size_t k = 0; k < count; ++k) {
     out.push_back(random_pose(3, k, Angle::degrees(40 + 80.0 * static_cast<double>(k % 10) / 10)));
@@ -38,7 +38,7 @@ std::unique_ptr<LightModel> model(LightOptions options) {
 
 TEST(LightModel, RaysAreTheReferenceToTheBit) {
   const Scene scene = box_wing_scene();
-  const auto poses = poses_of(6);
+  const auto poses = many_poses(6);
   const auto table = lit(*model({.method = LightMethod::Rays}), poses);
   const auto reference = Integrator(scene).evaluate(poses, {}, 1);
   for (std::size_t k = 0; k < poses.size(); ++k)
@@ -51,7 +51,7 @@ TEST(LightModel, RaysAreTheReferenceToTheBit) {
 // The half-widths are 95 % ones: of 120 rows 114 are expected inside, fewer than 105 with a chance
 // of 1e-4 if rows were independent.
 TEST(LightModel, AutoMeetsTheAccuracyAndItsHalfWidthsCoverRays) {
-  const auto poses = poses_of(120);
+  const auto poses = many_poses(120);
   const auto fast = lit(*model({}), poses);
   const auto dense = lit(*model({.method = LightMethod::Rays, .accuracy = 5e-4}), poses);
   const std::vector<double> floor = model({})->facts().floor_i;
@@ -68,7 +68,7 @@ TEST(LightModel, AutoMeetsTheAccuracyAndItsHalfWidthsCoverRays) {
 
 // As above: 105 of 120 rows. What masks of 70 cells tell to 5 % needs no rays in nine of ten poses.
 TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
-  const auto poses = poses_of(120);
+  const auto poses = many_poses(120);
   const auto many = model(for_many_poses({}));
   const auto fast = lit(*many, poses);
   const auto dense = lit(*model({.method = LightMethod::Rays, .accuracy = 5e-4}), poses);
@@ -130,7 +130,7 @@ TEST(LightModel, OnlyAutoIsAskedOtherwiseForManyPoses) {
 }
 
 TEST(LightModel, ARowDoesNotKnowItsNeighbours) {
-  const auto poses = poses_of(40);
+  const auto poses = many_poses(40);
   for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks, LightMethod::Auto}) {
     LightOptions options;
     options.method = method;
@@ -149,7 +149,7 @@ TEST(LightModel, ARowDoesNotKnowItsNeighbours) {
 }
 
 TEST(LightModel, MaterialsAddUpToDirectLight) {
-  const auto poses = poses_of(20);
+  const auto poses = many_poses(20);
   for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks, LightMethod::Auto}) {
     const auto light = model({.method = method});
     const std::size_t materials = light->materials().size();
@@ -186,7 +186,7 @@ TEST(LightModel, MasksTellGlintsAsRaysDo) {
 TEST(LightModel, CacheGivesTheSameBytesAndSurvivesDamage) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "umov_mask_cache";
   std::filesystem::remove_all(folder);
-  const auto poses = poses_of(10);
+  const auto poses = many_poses(10);
   LightOptions options;
   options.mask_cache = folder;
   const auto fresh = model(options);
@@ -208,7 +208,7 @@ TEST(LightModel, CacheGivesTheSameBytesAndSurvivesDamage) {
 TEST(LightModel, MasksOfSeveralJobsAreJoinedInTheCache) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "umov_joined_masks";
   std::filesystem::remove_all(folder);
-  const auto all = poses_of(20);
+  const auto all = many_poses(20);
   const std::vector<Pose> some(all.begin(), all.begin() + 10), others(all.begin() + 10, all.end());
   LightOptions options{.method = LightMethod::Masks};
   options.mask_cache = folder;
@@ -297,7 +297,7 @@ TEST(LightModel, HeatFollowsThePartsThatTurn) {
 // traced serves the next one.
 TEST(LightModel, TracingMasksCanBeStopped) {
   const auto light = model({.method = LightMethod::Masks});
-  const auto poses = poses_of(100);
+  const auto poses = many_poses(100);
   std::atomic<bool> cancel = true;
   LightTask task;
   task.cancel = &cancel;
@@ -313,9 +313,9 @@ TEST(LightModel, TracingMasksCanBeStopped) {
 TEST(LightModel, FewPosesTraceFewDirections) {
   const auto light = model({.method = LightMethod::Masks});
   const std::size_t before = light->mask_bytes();
-  (void)lit(*light, poses_of(2));
+  (void)lit(*light, many_poses(2));
   const std::size_t few = light->mask_bytes() - before;
-  (void)lit(*light, poses_of(400));
+  (void)lit(*light, many_poses(400));
   EXPECT_GT(few, 0U);
   EXPECT_GT(light->mask_bytes() - before, 20 * few);
 }
@@ -335,7 +335,7 @@ TEST(LightModel, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
   for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks, LightMethod::Auto}) {
     StokesTable out;
-    EXPECT_FALSE(model({.method = method})->evaluate(poses_of(5), out, {false, false, 1, &stop}));
+    EXPECT_FALSE(model({.method = method})->evaluate(many_poses(5), out, {false, false, 1, &stop}));
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using namespace cases;
 
-const StraightLine line("2018-03-20T06:30:00.5Z");
+const StraightLine overhead("2018-03-20T06:30:00.5Z");
 
 const std::vector<Band> bands{three_bands()[1]};
 
@@ -24,15 +24,16 @@ const PassLight &white_sphere() {
 }
 
 std::vector<ObservingGeometry> samples() {
-  const Track track = Track::make(line.request()).value();
+  const Track track = Track::make(overhead.request()).value();
   std::vector<ObservingGeometry> out;
   for (double s = 0; s <= 600; s += 10)
-    out.push_back(track.observe(plus_seconds(line.start, s)).value());
+    out.push_back(track.observe(plus_seconds(overhead.start, s)).value());
   return out;
 }
 
 PassBrightness described(const PassLight &light, const std::vector<ObservingGeometry> &at) {
-  const auto pass = light.describe(line.trajectory(), origin_site, ShadowModel::Ellipsoid, 0, at);
+  const auto pass =
+      light.describe(overhead.trajectory(), origin_site, ShadowModel::Ellipsoid, 0, at);
   EXPECT_TRUE(pass) << pass.error().text();
   return pass.value_or(PassBrightness());
 }
@@ -84,16 +85,16 @@ PassLight turning_cylinder() {
   const std::vector<Material> metal(mesh.groups.size(), interface_of("paper_al", 60));
   const auto scene = make_scene(mesh, NormalMode::Smooth, bands, metal, metal, diagnostics);
   EXPECT_TRUE(scene) << scene.error().text();
-  const SpinLaw spin{InertialLaw{}, {1, 0, 0}, 2 * pi / 47, line.start};
+  const SpinLaw spin{InertialLaw{}, {1, 0, 0}, 2 * pi / 47, overhead.start};
   PassBody body{*scene, {spin}, {}};
   return PassLight::of_body(std::move(body), pass_light_options()).value();
 }
 
 std::vector<ObservingGeometry> samples_apart(double step_s) {
-  const Track track = Track::make(line.request()).value();
+  const Track track = Track::make(overhead.request()).value();
   std::vector<ObservingGeometry> out;
   for (double s = 200; s <= 400; s += step_s)
-    out.push_back(track.observe(plus_seconds(line.start, s)).value());
+    out.push_back(track.observe(plus_seconds(overhead.start, s)).value());
   return out;
 }
 

@@ -15,7 +15,7 @@
 namespace umov {
 namespace {
 
-const std::string folder = UMOV_SOURCE_DIR "/tests/data/ephemeris/";
+const std::string passes_folder = UMOV_SOURCE_DIR "/tests/data/ephemeris/";
 const Site maui = *make_site("maui", 20.7083, -156.2578, 3058);
 
 ElementSet elements_of(const std::string &file, int norad) {
@@ -31,19 +31,19 @@ Epoch<Utc> utc(const std::string &text) { return *utc_from_iso(text); }
 
 /// Columns of a reference file by name, one list of rows per pass (one where it has no such
 /// column).
-struct Row {
+struct PassRow {
   Epoch<Utc> time;
   double elevation, sunlit, phase, sun_elevation;
 };
-std::vector<std::vector<Row>> read_rows(const std::string &file) {
-  std::ifstream stream(folder + file);
+std::vector<std::vector<PassRow>> read_rows(const std::string &file) {
+  std::ifstream stream(passes_folder + file);
   std::string line;
   std::getline(stream, line);
   std::map<std::string, std::size_t> column;
   std::istringstream head(line);
   for (std::string name; std::getline(head, name, ',');)
     column.emplace(name, column.size());
-  std::map<std::string, std::vector<Row>> out;
+  std::map<std::string, std::vector<PassRow>> out;
   while (std::getline(stream, line)) {
     std::vector<std::string> cell;
     std::istringstream cells(line);
@@ -54,7 +54,7 @@ std::vector<std::vector<Row>> read_rows(const std::string &file) {
         {utc(cell[column.at("utc")]), number("el_deg"), number("sun_frac_ellipsoid"),
          number("phase_deg"), number("sun_el_deg")});
   }
-  std::vector<std::vector<Row>> list;
+  std::vector<std::vector<PassRow>> list;
   for (auto &[name, rows] : out)
     list.push_back(std::move(rows));
   return list;
@@ -62,7 +62,7 @@ std::vector<std::vector<Row>> read_rows(const std::string &file) {
 
 /// Seconds from the first row at which the elevation crosses a value, by the cubic through four
 /// rows: good to 1e-3 s for rows 5 s apart.
-double crossing(const std::vector<Row> &rows, double wanted, bool is_up) {
+double crossing(const std::vector<PassRow> &rows, double wanted, bool is_up) {
   for (std::size_t k = 1; k + 2 < rows.size(); ++k) {
     const bool is_here = is_up ? rows[k].elevation <= wanted && rows[k + 1].elevation > wanted
                                : rows[k].elevation > wanted && rows[k + 1].elevation <= wanted;
@@ -87,7 +87,7 @@ double crossing(const std::vector<Row> &rows, double wanted, bool is_up) {
 }
 
 TEST(Passes, EightPassesOfExplorer27RiseAndSetWhenTheReferenceSays) {
-  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  const ElementSet set = elements_of(passes_folder + "elements.tle", 1328);
   const auto found = find_passes(Trajectory(set), maui, utc("2022-02-22T00:00:00Z"),
                                  utc("2022-03-02T00:00:00Z"), {});
   ASSERT_TRUE(found) << found.error().text();
@@ -103,7 +103,7 @@ TEST(Passes, EightPassesOfExplorer27RiseAndSetWhenTheReferenceSays) {
     EXPECT_NEAR(seconds_between(pass->rise.time, rows[0].time), crossing(rows, 10, true), 0.1);
     EXPECT_NEAR(seconds_between(pass->set.time, rows[0].time), crossing(rows, 10, false), 0.1);
     double top = 0, low = 180, high = 0, seen = 0;
-    for (const Row &row : rows) {
+    for (const PassRow &row : rows) {
       top = std::max(top, row.elevation);
       if (row.elevation > 10 && row.sunlit > 0 && row.sun_elevation < -6)
         seen = std::max(seen, row.elevation);
@@ -125,7 +125,7 @@ TEST(Passes, EightPassesOfExplorer27RiseAndSetWhenTheReferenceSays) {
 }
 
 TEST(Passes, TheEndsOfASpanDoNotMoveTheCulmination) {
-  const Trajectory orbit(elements_of(folder + "elements.tle", 1328));
+  const Trajectory orbit(elements_of(passes_folder + "elements.tle", 1328));
   const auto whole =
       find_passes(orbit, maui, utc("2022-02-22T00:00:00Z"), utc("2022-02-23T00:00:00Z"), {});
   ASSERT_TRUE(whole && !whole->passes.empty());
@@ -157,8 +157,8 @@ TEST(Passes, TheShadowIsEnteredWhenHalfTheSunIsGone) {
   ASSERT_GT(expected, 0);
   PassSearch search;
   search.altitude_min = Angle::degrees(2);
-  const auto found = find_passes(Trajectory(elements_of(folder + "elements.tle", 1328)), maui,
-                                 rows.front().time, rows.back().time, search);
+  const auto found = find_passes(Trajectory(elements_of(passes_folder + "elements.tle", 1328)),
+                                 maui, rows.front().time, rows.back().time, search);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->passes.size(), 1u);
   ASSERT_EQ(found->passes.front().shadow.size(), 1u);
@@ -202,7 +202,7 @@ TEST(Passes, NoneIsMissedThatADenseSearchSees) {
 }
 
 TEST(Passes, TheQuickAltitudeIsThatOfTheEphemeris) {
-  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  const ElementSet set = elements_of(passes_folder + "elements.tle", 1328);
   const Sgp4 model(set);
   for (double minutes = -2000; minutes < 2000; minutes += 37) {
     const Epoch<Utc> time = plus_seconds(set.epoch, 60 * minutes);
@@ -235,7 +235,7 @@ TEST(Passes, AStationaryObjectIsUpAllTheTime) {
 }
 
 TEST(Passes, AnEmptySpanAndADecayedObject) {
-  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  const ElementSet set = elements_of(passes_folder + "elements.tle", 1328);
   const auto none = find_passes(Trajectory(set), maui, utc("2022-02-22T00:00:00Z"),
                                 utc("2022-02-22T00:00:00Z"), {});
   ASSERT_TRUE(none);
@@ -250,7 +250,7 @@ TEST(Passes, AnEmptySpanAndADecayedObject) {
 }
 
 TEST(Passes, ACancelledSearchSaysSo) {
-  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  const ElementSet set = elements_of(passes_folder + "elements.tle", 1328);
   std::atomic<bool> cancel{true};
   PassSearch search;
   search.cancel = &cancel;
@@ -278,11 +278,11 @@ TEST(Passes, ADenseReference) {
       {20580, "2018-01-21T00:00:00Z", "2018-01-25T00:00:00Z"}};
   for (const auto &[norad, start, stop] : spans)
     found[std::to_string(norad)] =
-        find_passes(Trajectory(elements_of(folder + "elements.tle", norad)), maui, utc(start),
-                    utc(stop), {})
+        find_passes(Trajectory(elements_of(passes_folder + "elements.tle", norad)), maui,
+                    utc(start), utc(stop), {})
             .value()
             .passes;
-  std::ifstream stream(folder + "passes_skyfield.csv");
+  std::ifstream stream(passes_folder + "passes_skyfield.csv");
   std::string line;
   std::getline(stream, line);
   int rows = 0, shadows = 0;

@@ -12,7 +12,7 @@
 namespace umov {
 namespace {
 
-const std::string data = UMOV_SOURCE_DIR "/tests/data/";
+const std::string test_data = UMOV_SOURCE_DIR "/tests/data/";
 
 bool is_same(const TemeState &a, const TemeState &b) {
   return a.position_km == b.position_km && a.velocity_km_s == b.velocity_km_s;
@@ -30,7 +30,7 @@ std::vector<double> mixed_minutes() {
 }
 
 TEST(Sgp4Lanes, GiveTheBitsOfOneStateAtATime) {
-  const auto sets = test::load_by_columns(data + "tle/mixed_979_2018-01-20.tle");
+  const auto sets = test::load_by_columns(test_data + "tle/mixed_979_2018-01-20.tle");
   ASSERT_EQ(sets.size(), 979u);
   const auto minutes = mixed_minutes();
   std::vector<TemeState> states(minutes.size());
@@ -50,7 +50,7 @@ TEST(Sgp4Lanes, GiveTheBitsOfOneStateAtATime) {
 }
 
 TEST(Sgp4Lanes, ManyObjectsGiveTheBitsOfOne) {
-  const auto sets = test::load_by_columns(data + "tle/mixed_979_2018-01-20.tle");
+  const auto sets = test::load_by_columns(test_data + "tle/mixed_979_2018-01-20.tle");
   std::vector<Sgp4> objects;
   std::vector<double> minutes;
   for (const ElementSet &set : sets) {
@@ -69,7 +69,7 @@ TEST(Sgp4Lanes, ManyObjectsGiveTheBitsOfOne) {
 
 TEST(Sgp4Lanes, FailuresStayInTheirLane) {
   // 28872 decays within the hour (SGP4-VER.TLE); its neighbours in time do not notice.
-  for (const ElementSet &set : test::load_by_columns(data + "sgp4/SGP4-VER.TLE")) {
+  for (const ElementSet &set : test::load_by_columns(test_data + "sgp4/SGP4-VER.TLE")) {
     const Sgp4 model(set);
     const std::vector<double> minutes{0, 1e5, 5, std::nan(""), 10, 1e9, 15, -20, 40, 50, 60};
     std::vector<TemeState> states(minutes.size());

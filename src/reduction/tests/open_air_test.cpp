@@ -70,17 +70,18 @@ Eigen::MatrixXd covariance_of(const Counted &c, bool is_apart, const CloudPrior 
   return out;
 }
 
-struct Case {
+struct AirCase {
   double flicker;
   bool is_apart;
   CloudPrior cloud;
 };
-const std::vector<Case> cases{{0, false, {.1, 0}}, {0, false, {.1, 60}},   {.02, false, {}},
-                              {.02, true, {}},     {.02, false, {.1, 60}}, {.02, true, {.1, 1e4}}};
+const std::vector<AirCase> cases{{0, false, {.1, 0}},    {0, false, {.1, 60}},
+                                 {.02, false, {}},       {.02, true, {}},
+                                 {.02, false, {.1, 60}}, {.02, true, {.1, 1e4}}};
 
 /// As with a common error for each column of a root of the whole covariance.
 TEST(OpenAir, ItsFitIsThatOfTheWholeMatrix) {
-  for (const Case &one : cases) {
+  for (const AirCase &one : cases) {
     const Counted c = shuffled(two_beams(12, 10, one.flicker));
     const auto n = static_cast<Eigen::Index>(c.data.size());
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
@@ -115,7 +116,7 @@ TEST(OpenAir, ItsFitIsThatOfTheWholeMatrix) {
 /// Where a posterior is highest, the step from its mean is the prior's covariance times the slope
 /// of the likelihood; the mean transparency of the prior is 1.
 TEST(OpenAir, TransparenciesAreTheMostLikelyOnes) {
-  for (const Case &one : cases) {
+  for (const AirCase &one : cases) {
     const Counted c = shuffled(two_beams(12, 10, one.flicker));
     const OpenAir air(c.places, one.is_apart, one.cloud);
     const auto t = air.transparencies(c.data, light);

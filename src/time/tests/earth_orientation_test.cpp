@@ -6,19 +6,19 @@
 namespace umov {
 namespace {
 
-Epoch<Utc> at(const char *iso) { return utc_from_iso(iso).value(); }
+Epoch<Utc> utc(const char *iso) { return utc_from_iso(iso).value(); }
 constexpr double arcsec_per_rad = 206264.806247;
 
 TEST(EarthOrientation, GivesTheIersTable) {
   // finals2000A, MJD 60309 (2023-12-31): x .138971, y .201880 arcsec, UT1-UTC .0089604 s.
-  const EarthOrientation eo = earth_orientation(at("2023-12-31T00:00:00Z"));
+  const EarthOrientation eo = earth_orientation(utc("2023-12-31T00:00:00Z"));
   EXPECT_TRUE(eo.is_covered);
   EXPECT_NEAR(eo.dut1_s, .0089604, 1e-12);
   EXPECT_NEAR(eo.x_p_rad * arcsec_per_rad, .138971, 1e-9);
   // Up to the leap second at the end of 2016 UT1-UTC stays near -.41; after it, near +.59.
-  EXPECT_LT(earth_orientation(at("2016-12-31T23:59:00Z")).dut1_s, -0.4);
-  EXPECT_GT(earth_orientation(at("2017-01-01T00:00:00Z")).dut1_s, 0.5);
-  EXPECT_FALSE(earth_orientation(at("1972-07-01T00:00:00Z")).is_covered);
+  EXPECT_LT(earth_orientation(utc("2016-12-31T23:59:00Z")).dut1_s, -0.4);
+  EXPECT_GT(earth_orientation(utc("2017-01-01T00:00:00Z")).dut1_s, 0.5);
+  EXPECT_FALSE(earth_orientation(utc("1972-07-01T00:00:00Z")).is_covered);
 }
 
 TEST(EarthOrientation, HoldsTheLastDayAndSaysByHowMuchThatMayBeOff) {
@@ -27,7 +27,7 @@ TEST(EarthOrientation, HoldsTheLastDayAndSaysByHowMuchThatMayBeOff) {
   EXPECT_FALSE(earth_orientation(later).is_covered);
   EXPECT_EQ(earth_orientation(later).dut1_s, earth_orientation(table.last).dut1_s);
   Diagnostics none, warned;
-  warn_if_outside_eop(at("1995-01-01T00:00:00Z"), table.last, none);
+  warn_if_outside_eop(utc("1995-01-01T00:00:00Z"), table.last, none);
   EXPECT_TRUE(none.empty());
   warn_if_outside_eop(table.last, later, warned);
   ASSERT_EQ(warned.warnings().size(), 1u);
@@ -56,8 +56,8 @@ TEST_F(OtherEarth, IsReadFromFinals2000AWithItsPredictions) {
   EXPECT_EQ(to_iso(table.last), "2017-01-02T00:00:00.000Z");
   EXPECT_EQ(to_iso(table.measured_last), "2017-01-01T00:00:00.000Z");
   // Half of the day before the leap second: -.4077601 + (.5912821 - 1 + .4077601) / 2.
-  EXPECT_NEAR(earth_orientation(at("2016-12-31T12:00:00Z")).dut1_s, -0.408239, 1e-6);
-  EXPECT_NEAR(earth_orientation(at("2017-01-01T12:00:00Z")).y_p_rad * arcsec_per_rad, 0.263375,
+  EXPECT_NEAR(earth_orientation(utc("2016-12-31T12:00:00Z")).dut1_s, -0.408239, 1e-6);
+  EXPECT_NEAR(earth_orientation(utc("2017-01-01T12:00:00Z")).y_p_rad * arcsec_per_rad, 0.263375,
               1e-9);
 }
 
@@ -66,9 +66,9 @@ TEST_F(OtherEarth, AtItsLastMidnightALeapSecondHasBeen) {
   ASSERT_TRUE(use_earth_orientation("57753,0.081400,0.263094,-0.4077601\n"
                                     "57754,0.080504,0.263145,0.5912821\n",
                                     "finals"));
-  EXPECT_EQ(earth_orientation(at("2017-01-01T00:00:00Z")).dut1_s, 0.5912821);
-  EXPECT_TRUE(earth_orientation(at("2017-01-01T00:00:00Z")).is_covered);
-  EXPECT_FALSE(earth_orientation(at("2017-01-01T00:00:01Z")).is_covered);
+  EXPECT_EQ(earth_orientation(utc("2017-01-01T00:00:00Z")).dut1_s, 0.5912821);
+  EXPECT_TRUE(earth_orientation(utc("2017-01-01T00:00:00Z")).is_covered);
+  EXPECT_FALSE(earth_orientation(utc("2017-01-01T00:00:01Z")).is_covered);
 }
 
 TEST_F(OtherEarth, IsReadFromColumns) {

@@ -8,10 +8,10 @@
 namespace umov {
 namespace {
 
-const MeshFileOptions metres{.unit = "m", .up = "+Z"};
+const MeshFileOptions in_metres{.unit = "m", .up = "+Z"};
 
 Result<MeshFile> read(const std::string &text, Diagnostics &diagnostics,
-                      const MeshFileOptions &options = metres) {
+                      const MeshFileOptions &options = in_metres) {
   const MtlLoader none = [](const std::string &) -> Result<std::string> {
     return fail(ErrorCode::BadInput, "none");
   };
@@ -117,7 +117,7 @@ TEST(ObjReader, ReadsAnMtlFileOnce) {
     text += "mtllib a.mtl\nmtllib ./a.mtl\nmtllib b.mtl\nmtllib b.mtl a.mtl\n";
   Diagnostics diagnostics;
   const auto result =
-      read_obj_text(text + square + "f 1 2 3\n", "a.obj", metres, loader, diagnostics);
+      read_obj_text(text + square + "f 1 2 3\n", "a.obj", in_metres, loader, diagnostics);
   ASSERT_TRUE(result) << result.error().text();
   EXPECT_EQ(asked, 3); // "a.mtl", "b.mtl", "b.mtl a.mtl"
   EXPECT_EQ(result->defined, (std::vector<std::string>{"red"}));
@@ -159,7 +159,7 @@ TEST(ObjReader, NamesMayHoldBlanksAndHashes) {
   };
   const auto result =
       read_obj_text("mtllib my file.mtl\n" + square + "usemtl red#2 # a note\nf 1 2 3\n", "a.obj",
-                    metres, loader, diagnostics);
+                    in_metres, loader, diagnostics);
   ASSERT_TRUE(result) << result.error().text();
   EXPECT_EQ(result->defined, (std::vector<std::string>{"red#2"}));
   EXPECT_EQ(result->mesh.groups[0], "red#2");
@@ -190,7 +190,7 @@ TEST(ObjReader, AsksForUnitAndUpWithTheBox) {
   EXPECT_FALSE(read(big, diagnostics, {.unit = "furlong", .up = "+Z"}));
   EXPECT_FALSE(read(big, diagnostics, {.unit = "m", .up = "Z"}));
   EXPECT_TRUE(diagnostics.empty());
-  EXPECT_TRUE(read(big, diagnostics, metres));
+  EXPECT_TRUE(read(big, diagnostics, in_metres));
   EXPECT_EQ(diagnostics.warnings().size(), 1u); // 13 km: "is unit right?"
 }
 
@@ -216,7 +216,7 @@ TEST(ObjReader, TurnsTheUpAxisProperly) {
 
 TEST(ObjReader, RefusesTooManyTriangles) {
   Diagnostics diagnostics;
-  MeshFileOptions few = metres;
+  MeshFileOptions few = in_metres;
   few.max_triangles = 1;
   EXPECT_FALSE(read(square + "f 1 2 3 4\n", diagnostics, few));
 }

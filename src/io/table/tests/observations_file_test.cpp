@@ -11,7 +11,7 @@ Result<ObservationsFile> read(const std::string &text) {
   return read_observations_text(text, "obs.csv", diagnostics);
 }
 
-constexpr const char *head = "# pol_frame: altaz\ntime_utc,band,I,I_err,q,u,q_err,u_err\n";
+constexpr const char *stokes_head = "# pol_frame: altaz\ntime_utc,band,I,I_err,q,u,q_err,u_err\n";
 
 TEST(Observations, OfOurOwnTablesAreReadBack) {
   Table table;
@@ -46,9 +46,9 @@ TEST(Observations, OfOurOwnTablesAreReadBack) {
 }
 
 TEST(Observations, GapsAreNotMeasured) {
-  const auto file = read(std::string(head) + "2018-01-21T05:10:00Z,V,2,0.1,,,,\n"
-                                             "2018-01-21T05:10:10Z,V,,,0.1,0.2,0.01,0.01\n"
-                                             "2018-01-21T05:10:20Z,V,,nan,,,,\n");
+  const auto file = read(std::string(stokes_head) + "2018-01-21T05:10:00Z,V,2,0.1,,,,\n"
+                                                    "2018-01-21T05:10:10Z,V,,,0.1,0.2,0.01,0.01\n"
+                                                    "2018-01-21T05:10:20Z,V,,nan,,,,\n");
   ASSERT_TRUE(file) << file.error().text();
   ASSERT_EQ(file->rows.size(), 2u); // the last says nothing
   EXPECT_TRUE(std::isnan(file->rows[0].q));
@@ -73,7 +73,7 @@ TEST(Observations, EveryFaultHasItsPlace) {
   struct Case {
     std::string text, message;
   };
-  const std::string h = head;
+  const std::string h = stokes_head;
   const std::string t = "2018-01-21T05:10:00Z";
   for (const Case &c : {
            Case{"", "obs.csv: no row of observations"},
@@ -114,10 +114,11 @@ TEST(Observations, EveryFaultHasItsPlace) {
 TEST(Observations, ValuesThatAreHardlyMeasuredAreToldOf) {
   const std::string t = "2018-01-21T05:10:0";
   Diagnostics diagnostics;
-  const auto file = read_observations_text(
-      std::string(head) + t + "0Z,V,1,.1,1.04,0,.01,.01\n" + t + "1Z,V,1,.1,0,-1.06,.01,.01\n" + t +
-          "2Z,V,1,.1,1.06,0,,\n" + t + "3Z,V,1,0,.1,0,.01,.01\n",
-      "obs.csv", diagnostics);
+  const auto file =
+      read_observations_text(std::string(stokes_head) + t + "0Z,V,1,.1,1.04,0,.01,.01\n" + t +
+                                 "1Z,V,1,.1,0,-1.06,.01,.01\n" + t + "2Z,V,1,.1,1.06,0,,\n" + t +
+                                 "3Z,V,1,0,.1,0,.01,.01\n",
+                             "obs.csv", diagnostics);
   ASSERT_TRUE(file) << file.error().text();
   ASSERT_EQ(diagnostics.warnings().size(), 3u);
   const auto begins = [&](std::size_t k, const char *words) {
