@@ -122,6 +122,9 @@ void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
           "axes [deg]; 0: exactly; else it takes longer")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
+  verb.add_flag("--by-group", o->request.materials.is_by_group,
+                "What is not known of materials is of each group of the mesh by itself: areas and "
+                "alignment of parts; takes longer");
   verb.add_option("--largest-floor", o->request.largest_floor,
                   "The floor grows with the misfit of the best attitude, up to this; 0: it stays")
       ->check(CLI::Range(0.0, 1.0))

@@ -35,6 +35,7 @@ TELESCOPE = blind.ROOT / "data/instruments/c11_imx250.toml"
 class Chain:
     def __init__(self, o, work):
         self.o, self.work = o, work
+        self.telescope(1.0)  # scenarios name it, those of the library before anything is observed
         for shape in {*o.objects.split(","), *(LIBRARY if "identity" in o.kinds else ())}:
             for words, kind in zip(blind.MESH[shape], ("fit", "true")):
                 path = work / f"{shape}_{kind}.obj"

@@ -136,11 +136,12 @@ void bind_request(nb::module_ &m) {
       .def(
           "set_material_errors",
           [](Request &r, double slope_sd, double reflectance_sd, double haze_sd, double tilt_sd_deg,
-             double largest_floor) {
-            r.materials = {slope_sd, reflectance_sd, haze_sd, tilt_sd_deg};
+             bool by_group, double largest_floor) {
+            r.materials = {slope_sd, reflectance_sd, haze_sd, tilt_sd_deg, by_group};
             r.largest_floor = largest_floor;
           },
-          "slope_sd"_a, "reflectance_sd"_a, "haze_sd"_a, "tilt_sd_deg"_a, "largest_floor"_a);
+          "slope_sd"_a, "reflectance_sd"_a, "haze_sd"_a, "tilt_sd_deg"_a, "by_group"_a,
+          "largest_floor"_a);
 }
 
 } // namespace

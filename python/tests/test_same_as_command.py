@@ -223,6 +223,8 @@ def test_tracking(command, tmp_path):
     assert other.state != found.state  # rays mend masks there: the test above can fail
     with pytest.raises(umov.UsageError, match="tilt_sd_deg is 0.5; .* 0 was expected"):
         umov.invert_track(curves["third"], AGENA, tmp_path / "second", set=GREEN, fit=umov.Fit(tilt_sd_deg=0.5))
+    with pytest.raises(umov.UsageError, match="by_group is True; .* False was expected"):
+        umov.invert_track(curves["third"], AGENA, tmp_path / "second", set=GREEN, fit=umov.Fit(by_group=True))
 
 
 @pytest.mark.parametrize(("words", "scenario", "changes", "ours"), [

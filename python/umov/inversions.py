@@ -49,6 +49,7 @@ class Fit(NamedTuple):
     largest_floor: float = 0.1  #: the same: the floor grows with the misfit of the best attitude, up to this; 0: it stays
     allow_old_elements: bool = False  #: elements over 30 days from the observations are taken all the same
     tilt_sd_deg: float = 0.0  #: invert_pose and invert_spin: how well the surfaces of each material are aligned to the body about each of its axes; 0: exactly, else it takes longer
+    by_group: bool = False  #: invert_pose and invert_spin: what is not known of materials is of each group of the mesh by itself (areas and alignment of parts); takes longer
 
 
 class Inversion(NamedTuple):
@@ -154,7 +155,7 @@ def _request(files: list[str] | None, fit: Fit | None, method: str = "auto") -> 
                    between(fit.scale_sd, "scale_sd", 0, 100), bool(fit.clouds), between(fit.outliers, "outliers", 0, 0.5),
                    not fit.intensity_only)
     out.set_material_errors(between(fit.slope_sd, "slope_sd", 0, 2), between(fit.reflectance_sd, "reflectance_sd", 0, 2),
-                            between(fit.haze_sd, "haze_sd", 0, 2), between(fit.tilt_sd_deg, "tilt_sd_deg", 0, 2),
+                            between(fit.haze_sd, "haze_sd", 0, 2), between(fit.tilt_sd_deg, "tilt_sd_deg", 0, 2), bool(fit.by_group),
                             between(fit.largest_floor, "largest_floor", 0, 1))
     return out
 

@@ -91,6 +91,8 @@ def invert_track(light: AnyCurves, scenario: AnyScenario, start: Inversion | str
     sd = between(rate_sd, "rate_sd", 1e-9, 10)
     if isinstance(fit, Fit) and fit.tilt_sd_deg:
         raise UsageError(f"tilt_sd_deg is {fit.tilt_sd_deg}; filters take surfaces for aligned, so 0 was expected: only invert_pose and invert_spin ask it")
+    if isinstance(fit, Fit) and fit.by_group:
+        raise UsageError("by_group is True; filters take what is not known of materials for common to all groups, so False was expected: only invert_pose and invert_spin ask it")
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,), _start_of(start) as named:
         return _inversion(_umov.invert_track(asked._scenario, _request(files, fit, "masks"), named, walk, sd,

@@ -34,7 +34,8 @@ Result<void> add_haze_spread(ObjectRun &one, KeptBlocks blocks, const Monitor &m
     return {};
   }
   for (const bool is_high : {false, true}) {
-    UMOV_ASSIGN(varied, with_materials(scene, [is_high](const Material &material) {
+    UMOV_ASSIGN(varied,
+                with_materials(scene, [is_high](const Material &material, const std::string &) {
                   return at_end(material, is_high);
                 }));
     UMOV_ASSIGN(models, make_light_models(one.request, varied, monitor.cancel));

@@ -19,6 +19,14 @@ Material with_slopes(Material material, double factor) {
   return material;
 }
 
+/// The scene in which no two groups share a material.
+Result<Scene> apart_by_group(const Scene &scene) {
+  return with_materials(scene, [](Material material, const std::string &group) {
+    material.name += " of " + group;
+    return material;
+  });
+}
+
 const Material &material_of(const Scene &scene, const AbundanceColumn &column) {
   const AbundanceColumn::Side &side = column.sides.front();
   const auto at = static_cast<std::size_t>(std::ranges::find(scene.mesh.groups, side.group) -
@@ -35,13 +43,17 @@ std::unique_ptr<LightByPart> LightByPart::make(const LightModel &elder,
   if (!errors.is_any() || !elder.joints().empty())
     return nullptr;
   std::unique_ptr<LightByPart> out(new LightByPart);
-  out->scenes_.push_back(elder.scene());
+  auto scene = errors.is_by_group ? apart_by_group(elder.scene()) : elder.scene();
+  if (!scene)
+    return nullptr;
+  out->scenes_.push_back(std::move(*scene));
   for (const double sign : {-1.0, 1.0}) {
     if (!(errors.slope > 0))
       break;
-    auto other = with_materials(elder.scene(), [&](const Material &material) {
-      return with_slopes(material, std::exp(sign * errors.slope));
-    });
+    auto other =
+        with_materials(out->scenes_.front(), [&](const Material &material, const std::string &) {
+          return with_slopes(material, std::exp(sign * errors.slope));
+        });
     if (!other)
       return nullptr;
     out->scenes_.push_back(std::move(*other));

@@ -1,5 +1,6 @@
 #pragma once
-// Private: light of an object taken apart by material, and how little of it is known.
+// Private: light of an object taken apart by material, or by group of the mesh, and how little of
+// it is known.
 
 #include <map>
 #include <mutex>

@@ -68,12 +68,13 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
   return scene;
 }
 
-Result<Scene> with_materials(const Scene &scene,
-                             const std::function<Material(const Material &)> &change) {
+Result<Scene>
+with_materials(const Scene &scene,
+               const std::function<Material(const Material &, const std::string &group)> &change) {
   const auto changed = [&](const std::vector<Surface> &side) {
     std::vector<Material> out;
-    for (const Surface &surface : side)
-      out.push_back(change(surface.material()));
+    for (std::size_t g = 0; g < side.size(); ++g)
+      out.push_back(change(side[g].material(), scene.mesh.groups[g]));
     return out;
   };
   const std::vector<Material> front = changed(scene.front), back = changed(scene.back);

@@ -22,6 +22,9 @@ struct MaterialErrors {
   double reflectance = 0.1; ///< of what a lobe and a body reflect
   double haze = 0.3;        ///< of what a material without a body scatters beside its lobe
   double tilt_deg = 0;      ///< of a turn of all its surfaces about each body axis
+  /// Of each group of the mesh apart, whatever groups share a material: areas and alignment are of
+  /// a part, not of what it is made of.
+  bool is_by_group = false;
   /// Any of them is not known.
   [[nodiscard]] bool is_any() const {
     return slope > 0 || reflectance > 0 || haze > 0 || tilt_deg > 0;

@@ -38,10 +38,11 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
                          Diagnostics &diagnostics, double crease_rad = default_crease_rad,
                          const std::string &file = {}, const std::atomic<bool> *cancel = nullptr);
 
-/// The scene with each material replaced by what `change` makes of it; the mesh stays. BadInput
-/// from a material.
-Result<Scene> with_materials(const Scene &scene,
-                             const std::function<Material(const Material &)> &change);
+/// The scene with each material replaced by what `change` makes of it, in the group of this name;
+/// the mesh stays. BadInput from a material.
+Result<Scene>
+with_materials(const Scene &scene,
+               const std::function<Material(const Material &, const std::string &group)> &change);
 
 /// Direction field of a group's surface on a triangle, zero where it has none.
 Vec3<Body> direction_field(const Mesh &mesh, const Surface &surface, std::size_t triangle);
