@@ -68,12 +68,15 @@ std::vector<NamedTable> no_pose_tables() {
 
 std::string text_of(const InvertRequest &request) {
   const CurveErrors &e = request.errors;
-  return fmt::format("grid {} method {} old {}; errors {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} "
-                     "{:.17g} {:.17g} {}; materials {:.17g} {:.17g} {:.17g} floor {:.17g}",
-                     request.grid, name_of(request.method), request.allow_old_elements, e.floor,
-                     e.floor_q, e.of_median(), e.zero_point_sd, e.scale_sd, e.has_clouds,
-                     e.outlier_share, e.outlier_factor, e.has_polarization, request.materials.slope,
-                     request.materials.reflectance, request.materials.haze, request.largest_floor);
+  return fmt::format(
+      "grid {} method {} old {}; errors {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} "
+      "{:.17g} {:.17g} {}; materials {:.17g} {:.17g} {:.17g} tilt {:.17g} by group {} "
+      "floor {:.17g}",
+      request.grid, name_of(request.method), request.allow_old_elements, e.floor, e.floor_q,
+      e.of_median(), e.zero_point_sd, e.scale_sd, e.has_clouds, e.outlier_share, e.outlier_factor,
+      e.has_polarization, request.materials.slope, request.materials.reflectance,
+      request.materials.haze, request.materials.tilt_deg, request.materials.is_by_group,
+      request.largest_floor);
 }
 
 Result<void> write_inversion(const Inversion &inversion, const Scenario &scenario,

@@ -108,18 +108,14 @@ bool LightByPart::name_parts(const AbundanceTable &sums, const MaterialErrors &e
   const auto beside = [&](const Columns &lobe, double sd) {
     return PartKind{"", sd, 0, tilt, !lobe.empty()};
   };
-  for (const Surface &surface : scene.front)
-    if (const auto one = found.extract(surface.material().name); !one.empty()) {
-      const bool has_body = surface.material().body.has_value();
-      add("lobe of " + one.key(), one.mapped().first, of_lobe);
-      add((has_body ? "body of " : "haze of ") + one.key(), one.mapped().second,
-          beside(one.mapped().first, has_body ? errors.reflectance : errors.haze));
-    }
-  for (const auto &[name, parts] : found) {
-    add("lobe of " + name, parts.first, of_lobe);
-    add("rest of " + name, parts.second,
-        beside(parts.first, std::max(errors.reflectance, errors.haze)));
-  }
+  for (const auto *side : {&scene.front, &scene.back})
+    for (const Surface &surface : *side)
+      if (const auto one = found.extract(surface.material().name); !one.empty()) {
+        const bool has_body = surface.material().body.has_value();
+        add("lobe of " + one.key(), one.mapped().first, of_lobe);
+        add((has_body ? "body of " : "haze of ") + one.key(), one.mapped().second,
+            beside(one.mapped().first, has_body ? errors.reflectance : errors.haze));
+      }
   return !kinds_.empty();
 }
 

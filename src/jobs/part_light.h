@@ -16,7 +16,8 @@ namespace umov::jobs {
 class LightByPart {
 public:
   /// None where an object has no such sums: parts that turn, measured or brushed
-  /// surfaces. Masks that `elder` has traced are not traced again.
+  /// surfaces. Masks that `elder` has traced are not traced again, unless groups that share a
+  /// material are taken apart: masks are of what shares one.
   static std::unique_ptr<LightByPart> make(const LightModel &elder, const MaterialErrors &errors,
                                            const JobOptions &options,
                                            const std::atomic<bool> *cancel = nullptr);

@@ -2,6 +2,7 @@
 
 #include "jobs/invert_light.h"
 
+#include "jobs/curve_questions.h"
 #include "jobs/tests/white_sphere.h"
 
 #include <umov/light/poses.h>
@@ -40,6 +41,22 @@ TEST_F(LightOfABall, IsSummedFastForTheSearchAndExactAtTheEnd) {
     EXPECT_NEAR(quick.i[k], expected, 0.01 * full) << k;
     EXPECT_NEAR(last.i[k], expected, 0.01 * full) << k;
   }
+}
+
+/// A folder of many jobs is known again by this text: rows of two different questions never meet.
+TEST(InvertRequests, AreToldApartByAllThatIsAskedOfMaterials) {
+  const InvertRequest plain;
+  const auto with = [](double MaterialErrors::*one) {
+    InvertRequest out;
+    out.materials.*one += 0.5;
+    return text_of(out);
+  };
+  for (const auto one : {&MaterialErrors::slope, &MaterialErrors::reflectance,
+                         &MaterialErrors::haze, &MaterialErrors::tilt_deg})
+    EXPECT_NE(with(one), text_of(plain));
+  InvertRequest by_group;
+  by_group.materials.is_by_group = true;
+  EXPECT_NE(text_of(by_group), text_of(plain));
 }
 
 } // namespace
