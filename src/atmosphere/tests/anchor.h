@@ -4,9 +4,6 @@
 namespace umov {
 
 /// A number of tests/data/anchors/observing_air.csv: nine digits.
-inline double of(const std::string &name) {
-  static const Anchors table("observing_air");
-  return table.row({name.c_str()})["value"];
-}
+inline double of(const std::string &name) { return anchor(name, "observing_air"); }
 
 } // namespace umov

@@ -86,8 +86,10 @@ private:
   std::vector<AnchorRow> rows_;
 };
 
-/// A number of tests/data/anchors/singles.csv.
-inline double anchor(const char *name) { return Anchors("singles").row({name})["value"]; }
+/// A number of a table of names and values.
+inline double anchor(const std::string &name, const char *table = "singles") {
+  return Anchors(table).row({name.c_str()})["value"];
+}
 
 /// Where a band of Table 1 stands among 425, 550, 650 nm.
 inline std::size_t band_of(const AnchorRow &row) {

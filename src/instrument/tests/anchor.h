@@ -4,9 +4,6 @@
 namespace umov {
 
 /// A number of tests/data/anchors/observing_instrument.csv: nine digits.
-inline double of(const std::string &name) {
-  static const Anchors table("observing_instrument");
-  return table.row({name.c_str()})["value"];
-}
+inline double of(const std::string &name) { return anchor(name, "observing_instrument"); }
 
 } // namespace umov

@@ -1,4 +1,5 @@
 #include "inverse/tests/box_light.h"
+#include "inverse/turning_fit.h"
 
 #include <Eigen/Dense>
 #include <functional>

@@ -6,10 +6,7 @@
 namespace umov {
 
 /// A number of tests/data/anchors/observing_reduction.csv: seven to ten digits.
-inline double of(const std::string &name) {
-  static const Anchors table("observing_reduction");
-  return table.row({name.c_str()})["value"];
-}
+inline double of(const std::string &name) { return anchor(name, "observing_reduction"); }
 
 constexpr double four_angles[] = {0, 45, 90, 135};
 constexpr double test_extinction = 300;
