@@ -14,6 +14,8 @@ from conftest import BUILD, DATA
 
 POSES = 100_000
 
+pytestmark = pytest.mark.alone
+
 
 class Loop:
     """A program beside this file, which waits for its turn."""

@@ -227,6 +227,17 @@ def test_tracking(command, tmp_path):
         umov.invert_track(curves["third"], AGENA, tmp_path / "second", set=GREEN, fit=umov.Fit(by_group=True))
 
 
+@pytest.mark.parametrize("fit", [umov.Fit(tilt_sd_deg=0.5), umov.Fit(by_group=True)])
+@pytest.mark.parametrize("ask", [
+    lambda fit: umov.invert_material("light.csv", AGENA, group="body", candidates=["aluminium"], fit=fit),
+    lambda fit: umov.invert_health("light.csv", AGENA, drift={"body": "aluminium"}, fit=fit),
+    lambda fit: umov.invert_plan(AGENA, {"one": {}, "other": {"object.materials.default": "paint_white"}}, fit=fit),
+    lambda fit: umov.identify("light.csv", AGENA, "library", fit=fit)])
+def test_what_only_searches_for_attitudes_ask_is_not_left_aside(ask, fit):
+    with pytest.raises(umov.UsageError, match="only invert_pose and invert_spin"):
+        ask(fit)
+
+
 @pytest.mark.parametrize(("words", "scenario", "changes", "ours"), [
     pytest.param(
         ["pose", "--grid", 1000, "--outliers", 0.05, "--floor", 0.03], AGENA,

@@ -160,6 +160,15 @@ def _request(files: list[str] | None, fit: Fit | None, method: str = "auto") -> 
     return out
 
 
+def _without_parts(fit: Fit | None) -> Fit | None:
+    """What asks parts of the light one by one is not left aside in silence."""
+    if isinstance(fit, Fit) and fit.tilt_sd_deg:
+        raise UsageError(f"tilt_sd_deg is {fit.tilt_sd_deg}; this takes surfaces for aligned, so 0 was expected: only invert_pose and invert_spin ask it")
+    if isinstance(fit, Fit) and fit.by_group:
+        raise UsageError("by_group is True; this asks no group by itself, so False was expected: only invert_pose and invert_spin do")
+    return fit
+
+
 def _inversion(found: _umov.Inversion) -> Inversion:
     import json
     tables = {name: Table(found.table(k)) for k, name in enumerate(found.names)}
@@ -312,7 +321,7 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
         raise UsageError(f"candidates is {candidates!r}; a list of names of materials, or of Materials, was expected")
     asked, words = _with_materials(Scenario(scenario, set), candidates, "candidates")
     with _files_of(light) as (files,):
-        return _inversion(_umov.invert_material(asked._scenario, _request(files, fit), str(group), words,
+        return _inversion(_umov.invert_material(asked._scenario, _request(files, _without_parts(fit)), str(group), words,
                                                 job_options(threads, cache, device=device), Watch(progress)))
 
 
@@ -366,7 +375,7 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     drifts = [f"{group}={material}" for group, material in zip(drift, names)]
     sd = between(attitude_sd_deg, "attitude_sd_deg", 0, 30)
     with _files_of(light, baseline) as (files, before):
-        return _inversion(_umov.invert_health(asked._scenario, _request(files, fit), drifts, before, sd,
+        return _inversion(_umov.invert_health(asked._scenario, _request(files, _without_parts(fit)), drifts, before, sd,
                                               job_options(threads, cache, device=device), Watch(progress)))
 
 
@@ -437,7 +446,7 @@ def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], 
     ratio = 0.0 if snr is None else between(snr, "snr", 0.1, 1e6)
     weights = [between(chances.get(name, 1.0), "priors", 1e-9, 1e9) for name in alternatives]
     return _inversion(_umov.invert_plan(asked._scenario, [str(name) for name in alternatives], [one._scenario for one in others],
-                                        weights, _request(None, fit), ratio, between(sky_mag, "sky_mag", -5, 40),
+                                        weights, _request(None, _without_parts(fit)), ratio, between(sky_mag, "sky_mag", -5, 40),
                                         job_options(threads, cache, device=device), Watch(progress)))
 
 
@@ -498,7 +507,7 @@ def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike
     prior = between(none_prior, "none_prior", 1e-6, 0.999)
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
-        return _inversion(_umov.identify(asked._scenario, _request(files, fit), path_text(library, "library"),
+        return _inversion(_umov.identify(asked._scenario, _request(files, _without_parts(fit)), path_text(library, "library"),
                                          [path_text(one, "objects") for one in objects], prior, job_options(threads, cache, device=device),
                                          Watch(progress)))
 

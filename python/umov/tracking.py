@@ -12,7 +12,7 @@ from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._numbers import between, path_text
 from .errors import UsageError
-from .inversions import AnyCurves, Fit, Inversion, _files_of, _inversion, _request
+from .inversions import AnyCurves, Fit, Inversion, _files_of, _inversion, _request, _without_parts
 from .scenarios import AnyScenario, Scenario
 
 __all__ = ["invert_track"]
@@ -89,11 +89,7 @@ def invert_track(light: AnyCurves, scenario: AnyScenario, start: Inversion | str
     """
     walk = between(rate_noise, "rate_noise", 0, 10)
     sd = between(rate_sd, "rate_sd", 1e-9, 10)
-    if isinstance(fit, Fit) and fit.tilt_sd_deg:
-        raise UsageError(f"tilt_sd_deg is {fit.tilt_sd_deg}; filters take surfaces for aligned, so 0 was expected: only invert_pose and invert_spin ask it")
-    if isinstance(fit, Fit) and fit.by_group:
-        raise UsageError("by_group is True; filters take what is not known of materials for common to all groups, so False was expected: only invert_pose and invert_spin ask it")
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,), _start_of(start) as named:
-        return _inversion(_umov.invert_track(asked._scenario, _request(files, fit, "masks"), named, walk, sd,
+        return _inversion(_umov.invert_track(asked._scenario, _request(files, _without_parts(fit), "masks"), named, walk, sd,
                                              job_options(threads, cache, device=device), Watch(progress)))

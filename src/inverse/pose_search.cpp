@@ -3,6 +3,7 @@
 #include "algebra/dense.h"
 #include "inverse/attitude_set.h"
 #include "inverse/model_error.h"
+#include "inverse/places.h"
 #include "inverse/pose_modes.h"
 #include "inverse/posterior.h"
 #include "inverse/some_epochs.h"
@@ -90,8 +91,11 @@ Result<std::vector<Turning>> search_grid(const CurveModel &model, const SearchOp
 bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
   constexpr double widest = 10 * degree;
   constexpr double least = 60; // effective samples
-  constexpr std::size_t most = 20;
-  return samples.effective >= least && modes.size() <= most &&
+  constexpr std::ptrdiff_t most = 20;
+  constexpr double little = 1e-3; // what modes hold that do not count
+  return samples.effective >= least &&
+         std::ranges::count_if(modes, [](const PoseMode &m) { return m.weight > little; }) <=
+             most &&
          std::ranges::none_of(
              modes, [](const PoseMode &m) { return m.weight > 0.01 && m.sd_rad() > widest; });
 }
@@ -371,44 +375,12 @@ void tell_refined(const SearchOptions &options, const Effort &effort, std::size_
     options.progress(effort.label, done, steps);
 }
 
-/// Places of fits under errors that shrink: many at first, by few epochs, and few of those that
-/// stay apart. A basin of one glint is a long valley, and there is one for each flat that could
-/// have mirrored the Sun; how they compare shows where a quarter of I is no longer forgiven. Of a
-/// model that is wrong by more than that it does not: each round has places of its own. Empty if it
-/// was stopped.
-std::vector<Turning> cooled_places(const CurveModel &model, const std::vector<Turning> &sorted,
-                                   std::size_t times, const SearchOptions &options) {
-  struct Round {
-    double floor; ///< of I, that is forgiven
-    std::size_t epochs;
-    int steps;
-    std::size_t places, left; ///< fits, best first, that are kept and that go on
-  };
-  constexpr Round rounds[] = {{0.25, 20, 3, 80, 600}, {0.08, 60, 4, 60, 0}};
-  std::vector<Turning> out;
-  auto from = inverse::spread_out(sorted, options.starts * times, 5 * degree);
-  for (const Round &round : rounds) {
-    const auto epochs = inverse::epochs_out_of_step(model.curve().epochs.size(), round.epochs);
-    const CurveLikelihood likelihood(model.curve(),
-                                     tempered(options.errors, model.curve(), round.floor), epochs);
-    const auto fits =
-        inverse::fit_turnings(model, likelihood, std::move(from), epochs,
-                              {Freedom::Attitude, round.steps, 0, 0, 2e-3, options.threads});
-    if (fits.empty())
-      return {};
-    const auto kept = inverse::turnings_of(fits, round.places * times);
-    out.insert(out.begin(), kept.begin(), kept.end()); // the best of the last round come first
-    from = inverse::turnings_of(fits, round.left * times);
-  }
-  return out;
-}
-
 /// Fixed attitudes that are worth a fit, of those that were judged best.
 Result<std::vector<Turning>> find_places(const SearchModels &models,
                                          const std::vector<Turning> &judged, const Effort &effort,
                                          FoundErrors &errors, const SearchOptions &options) {
   tell_refined(options, effort, 0);
-  auto out = cooled_places(models.quick, judged, effort.times, options);
+  auto out = inverse::cooled_places(models, judged, effort.times, options);
   bool has_changed = false;
   if (out.empty() || !errors.ask(out, has_changed))
     return tl::unexpected(stopped());
@@ -419,12 +391,11 @@ Result<std::vector<Turning>> find_places(const SearchModels &models,
 Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
                                            const std::vector<Turning> &places, const Effort &effort,
                                            FoundErrors &errors, const SearchOptions &options) {
-  const inverse::FitPlan first_steps{Freedom::Attitude, 12, 0, 0, 1e-3, options.threads};
   const std::size_t most = std::max(effort.kept, last_fits * times_of(models.last.curve()));
   tell_refined(options, effort, 1);
   const auto fits =
-      inverse::fit_turnings(models.first, errors.likelihood(), places, {}, first_steps);
-  const auto from = inverse::turnings_of(fits, most);
+      inverse::first_fits(models.first, errors.likelihood(), places, most, options.threads);
+  const auto from = inverse::apart_first(inverse::turnings_of(fits, fits.size()), most);
   bool has_changed = false;
   if (fits.empty() || !errors.ask(from, has_changed))
     return tl::unexpected(stopped());
@@ -440,29 +411,15 @@ Result<void> needs_measurements(const CurveLikelihood &likelihood) {
   return {};
 }
 
-/// Modes that explain the data nearly as well as the best: where these are many, more were passed
-/// by.
-bool are_many(const std::vector<TurningFit> &fits, const ObservedCurve &curve) {
-  constexpr double near = 20; // in chi-square
-  constexpr std::ptrdiff_t many = 10;
-  const auto modes = inverse::modes_of(fits, inverse::span_of(curve));
-  if (modes.empty())
-    return false;
-  const double best = std::ranges::min(modes, {}, &PoseMode::chi2).chi2;
-  return std::ranges::count_if(
-             modes, [&](const PoseMode &mode) { return mode.chi2 < best + near; }) >= many;
-}
-
 /// Fits of all attitudes. Light that leaves many of them alike is asked for more of them.
 Result<std::vector<TurningFit>> fits_of_all(const SearchModels &models,
                                             const std::vector<Turning> &judged, FoundErrors &errors,
                                             const SearchOptions &options) {
   constexpr std::size_t more = 4, most = 8; // of fits; of places
-  const ObservedCurve &curve = models.last.curve();
-  const Effort usual{times_of(curve)};
+  const Effort usual{times_of(models.last.curve())};
   UMOV_ASSIGN(places, find_places(models, judged, usual, errors, options));
   UMOV_ASSIGN(fits, fit_places(models, places, usual, errors, options));
-  if (!are_many(fits, curve))
+  if (!inverse::are_many(fits))
     return std::move(fits);
   const Effort larger{std::min(more * usual.times, most), more * last_fits, "refine more"};
   // Those that are known come first: what comes out is no worse.

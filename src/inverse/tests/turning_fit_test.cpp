@@ -10,7 +10,7 @@ const Vec3<Body> normal = normalized(Vec3<Body>{1, 1, 1});
 
 /// The box with one mirror more: a glint many times as bright as all else, by which two directions
 /// of an attitude are known to 1e-5 and the turn about the mirror's normal by the rest.
-bool glinting(std::span<const Pose> poses, StokesTable &out) {
+bool mirroring(std::span<const Pose> poses, StokesTable &out) {
   (void)Box()(poses, out);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Vec3<Body> half = normalized(poses[k].sun + poses[k].observer);
@@ -37,7 +37,7 @@ Quaternion glinting_at(const ObservedEpoch &epoch) {
 /// three in a row gain less than .01 each.
 void expect_rests_below(const Turning &truth, const Turning &start, const ObservedCurve &curve,
                         inverse::Freedom freedom) {
-  const CurveModel model(curve, glinting, {0, 1});
+  const CurveModel model(curve, mirroring, {0, 1});
   const CurveLikelihood likelihood(curve, no_floor());
   const bool drops_hopeless = freedom == inverse::Freedom::AttitudeAndRate; // as a search of spins
   const auto fits = inverse::fit_turnings(model, likelihood, {start}, {},
@@ -54,7 +54,7 @@ TEST(TurningFit, RestsAtTheBottomOfTheValleyOfAGlint) {
   for (int k = 0; k < 6; ++k) {
     SCOPED_TRACE(k);
     const Quaternion truth = turned(glint, normal * k);
-    observe(curve, glinting, {truth, {}}, 100, static_cast<std::uint64_t>(k));
+    observe(curve, mirroring, {truth, {}}, 100, static_cast<std::uint64_t>(k));
     // Up the valley: the normal of the mirror stays where it is.
     const Quaternion start = turned(truth, normal * (k % 2 == 0 ? 0.1 : -0.1));
     expect_rests_below({truth, {}}, {start, {}}, curve, inverse::Freedom::Attitude);
@@ -69,7 +69,7 @@ TEST(TurningFit, OfASpinRestsAtTheBottomToo) {
   for (int k = 0; k < 3; ++k) {
     SCOPED_TRACE(k);
     const Turning truth{turned(glint, normal * k), {0, 0, 2e-3}};
-    observe(curve, glinting, truth, 100, static_cast<std::uint64_t>(k));
+    observe(curve, mirroring, truth, 100, static_cast<std::uint64_t>(k));
     expect_rests_below(truth, inverse::stepped(truth, off, inverse::span_of(curve)), curve,
                        inverse::Freedom::AttitudeAndRate);
   }

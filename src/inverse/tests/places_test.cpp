@@ -1,0 +1,84 @@
+#include "inverse/places.h"
+
+#include "inverse/tests/box_light.h"
+
+namespace umov {
+namespace {
+
+/// The box with light of dents three degrees apart, as narrow lobes make them: where the Sun stands
+/// in the body comes back in them.
+bool dented(std::span<const Pose> poses, StokesTable &out) {
+  constexpr double times = 2 * pi / (3 * inverse::degree);
+  (void)Box()(poses, out);
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    for (std::size_t b = 0; b < out.bands; ++b)
+      out.i[k * out.bands + b] +=
+          0.3 * (2 + std::cos(times * poses[k].sun.x) + std::cos(times * poses[k].sun.y));
+  return true;
+}
+
+/// The same, and once more as the light of its one part.
+bool dented_parts(std::span<const Pose> poses, StokesTable &out) {
+  StokesTable all;
+  (void)dented(poses, all);
+  out.resize(poses.size(), 2 * all.bands);
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    for (std::size_t b = 0; b < out.bands; ++b) {
+      const std::size_t from = k * all.bands + b % all.bands;
+      out.put(k, b, {{all.i[from], all.q[from], all.u[from], 0}, {}});
+    }
+  return true;
+}
+
+Turning turned_by(const Quaternion &q, double x, double y, double z) {
+  return {turned(q, Vec3<Body>{x, y, z}), {}};
+}
+
+TEST(Places, AFitOfPartsLeavesItsDentForADeeperOneNearby) {
+  ObservedCurve curve = pass(24);
+  const Quaternion truth = turned({}, Vec3<Body>{0.3, 0.5, 0.7});
+  observe(curve, dented, {truth, {}}, 100, 1);
+  const CurveLikelihood likelihood(curve, no_floor());
+  const CurveModel known(curve, dented, {0, 1});
+  const CurveModel parted(curve, dented_parts, {0, 1}, {{"all", 0.1, 0}});
+  const std::vector<Turning> start{turned_by(truth, 0.02, 0.03, 0.02)}; // 2.4 deg
+  const auto alone = inverse::first_fits(known, likelihood, start, 24, 1);
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_GT(angle_between(alone[0].turning.attitude, truth), inverse::degree); // it is a dent
+  const auto around = inverse::first_fits(parted, likelihood, start, 24, 1);
+  ASSERT_GT(around.size(), 1u);
+  EXPECT_LT(around[0].at.chi2, alone[0].at.chi2 - 20); // e^10 likelier, if not yet the truth
+  EXPECT_LT(angle_between(around[0].turning.attitude, truth),
+            angle_between(alone[0].turning.attitude, truth) / 2);
+}
+
+TEST(Places, DentsCrowdOutNoOtherPlace) {
+  std::vector<Turning> sorted;
+  for (int k = 0; k < 20;
+       ++k) // best first: twenty dents within a inverse::degree, then one far away
+    sorted.push_back(turned_by({}, 0.0009 * k, 0, 0));
+  sorted.push_back(turned_by({}, 0, 1, 0));
+  const auto kept = inverse::apart_first(sorted, 4);
+  // The places come first, beside them half of four as dents that are .1 deg from all others.
+  ASSERT_EQ(kept.size(), 4u);
+  EXPECT_EQ(kept[0].attitude.x, sorted[0].attitude.x);
+  EXPECT_EQ(kept[1].attitude.y, sorted[20].attitude.y);
+  EXPECT_EQ(kept[2].attitude.x, sorted[2].attitude.x);
+  EXPECT_EQ(kept[3].attitude.x, sorted[4].attitude.x);
+}
+
+TEST(Places, AreManyIfTheyAreApart) {
+  std::vector<inverse::TurningFit> dents(12), apart(12);
+  for (int k = 0; k < 12; ++k) {
+    dents[static_cast<std::size_t>(k)].turning = turned_by({}, 0.002 * k, 0, 0);
+    apart[static_cast<std::size_t>(k)].turning = turned_by({}, 0.1 * k, 0, 0);
+  }
+  EXPECT_FALSE(inverse::are_many(dents));
+  EXPECT_TRUE(inverse::are_many(apart));
+  for (std::size_t k = 9; k < apart.size(); ++k)
+    apart[k].at.chi2 = 25; // e^-12.5 of the best
+  EXPECT_FALSE(inverse::are_many(apart));
+}
+
+} // namespace
+} // namespace umov
