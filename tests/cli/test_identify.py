@@ -3,6 +3,7 @@ looks light up between 9 degrees and, where scenarios are named, in masks."""
 import json
 import random
 import re
+import shutil
 
 import pytest
 from astropy.table import Table
@@ -27,14 +28,24 @@ set = "paper_rgb"
 """
 
 
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """A folder for what all tests here begin with."""
+    return tmp_path_factory.mktemp("kept")
+
+
 @pytest.fixture
-def library(umov, scene, tmp_path):
+def library(umov, scene, tmp_path, kept):
     """Cubesats of four kinds of materials in tmp_path/lib; lib/NAME.umovsig of NAME.toml. place.toml has no mesh."""
     text = (tmp_path / scene([1, 0, 0, 0], "masks", "plain")).read_text()
     for name in NAMES[1:]:
         (tmp_path / f"{name}.toml").write_text(variant(text, name))
-    done = umov("library", "build", *(f"{name}.toml" for name in NAMES), "-o", "lib", "-q")
-    assert done.code == 0, done.err
+    if not (kept / "lib").exists():
+        done = umov("library", "build", *(f"{name}.toml" for name in NAMES), "-o", "lib", "-q")
+        assert done.code == 0, done.err
+        shutil.copytree(tmp_path / "lib", kept / "lib")
+    else:
+        shutil.copytree(kept / "lib", tmp_path / "lib")
     (tmp_path / "place.toml").write_text(PLACE.format(root=ROOT))
 
 
