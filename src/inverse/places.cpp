@@ -73,8 +73,10 @@ std::vector<Turning> look_around(const CurveModel &model, const CurveLikelihood 
 
 std::vector<Turning> cooled_places(const SearchModels &models, const std::vector<Turning> &sorted,
                                    std::size_t times, const SearchOptions &options) {
-  constexpr std::size_t first = 80, left = 600, last = 60; // places, and fits that go on
-  constexpr FewSteps forgiving{0.25, 20, 3}, strict{0.08, 60, 4}, of_parts{0.08, 20, 3};
+  const bool has_parts = !models.first.parts().empty(); // their fits take ten times as long
+  constexpr std::size_t left = 600, last = 60;          // fits that go on; places
+  const std::size_t first = has_parts ? 40 : 80, as_told = has_parts ? 40 : last;
+  constexpr FewSteps forgiving{0.25, 20, 3}, strict{0.08, 60, 4}, of_parts{0.08, 20, 2};
   std::vector<Turning> out;
   const auto add = [&](const std::vector<TurningFit> &fits, std::size_t count) {
     const auto best = turnings_of(fits, count * times);
@@ -84,9 +86,9 @@ std::vector<Turning> cooled_places(const SearchModels &models, const std::vector
   const auto fits = fits_of(forgiving, models.quick,
                             spread_out(sorted, options.starts * times, 5 * degree), options);
   const auto from = turnings_of(fits, left * times);
-  if (!add(fits, first) || !add(fits_of(strict, models.quick, from, options), last))
+  if (!add(fits, first) || !add(fits_of(strict, models.quick, from, options), as_told))
     return {};
-  if (!models.first.parts().empty() && !add(fits_of(of_parts, models.first, from, options), last))
+  if (has_parts && !add(fits_of(of_parts, models.first, from, options), last))
     return {};
   return out;
 }
@@ -98,7 +100,7 @@ std::vector<TurningFit> first_fits(const CurveModel &model, const CurveLikelihoo
   auto out = fit_turnings(model, likelihood, places, {}, steps);
   if (model.parts().empty() || out.empty())
     return out;
-  const auto apart = spread_out(turnings_of(out, out.size()), most, place_wide);
+  const auto apart = spread_out(turnings_of(out, out.size()), most / 2, place_wide);
   auto more =
       fit_turnings(model, likelihood, look_around(model, likelihood, apart, threads), {}, steps);
   if (more.empty())
