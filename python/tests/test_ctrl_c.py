@@ -68,7 +68,7 @@ def poses_of_a_curve(_):
     return lambda: umov.invert_pose(curve, scenario, threads=1, cache=False)
 
 
-pytestmark = [pytest.mark.filterwarnings("ignore::umov.UmovWarning"), pytest.mark.alone]  # of old elements
+pytestmark = [pytest.mark.alone, pytest.mark.filterwarnings("ignore::umov.UmovWarning")]  # warnings of old elements
 
 #: What makes the call ready, and after how much of it Ctrl-C comes [s].
 LONG = {

@@ -117,6 +117,7 @@ def test_side_by_side_gives_the_same_bytes(pool, hst):
         assert list(executor.map(poses_of, range(4), [engine] * 4)) == alone
 
 
+@pytest.mark.alone
 def test_the_interpreter_goes_on_while_poses_are_lit(plate):
     engine = umov.Engine(plate)
     sun, observer = umov.random_poses(400_000, 60)
@@ -316,6 +317,7 @@ def test_import_needs_no_other_package():
     assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout == "[]\n"
 
 
+@pytest.mark.alone
 def test_an_import_costs_a_fraction_more_than_that_of_numpy():
     """0.3 s are allowed on a machine where numpy takes 0.10 s of the processor and this
     0.17: the least of several, as neighbours cost processor time too."""

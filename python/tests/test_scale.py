@@ -318,6 +318,7 @@ def test_short_shards_share_a_task_and_what_it_leaves_is_asked_for_again(scene):
     assert sorted(played.asked) == sorted([*range(40), 3, 4]) and (driver.done, driver.failed) == (39, 1)
 
 
+@pytest.mark.alone
 def test_a_task_ends_with_a_shard_that_failed_or_when_its_time_is_over(monkeypatch):
     from umov import _scale_store
     same = {"program": "", "place": "out", "threads": 1, "timeout_s": 60.0, "memory_mb": None}

@@ -9,8 +9,8 @@ _ARGUMENTS = {"alt": "alt_deg", "alternative": "alternatives", "phase": "phase_d
               "std": "standards", "tilt-sd": "tilt_sd_deg", "temperature": "temperatures", "state": "laser", "masks": "mask_file", "visibility": "method"}
 #: The others. What is not here is none of ours: a name of a file may begin so.
 _SAME = frozenset((
-    "accept allow-bad-checksum allow-old-elements aperture-fwhm band bands calibration candidates cells change-per-s clouds colour "
-    "device drift exposure-s false-alarm floor frames gap-s grid haze-sd height-m knot-s largest-floor longest-s mag mag-max method nm "
+    "accept allow-bad-checksum allow-old-elements aperture-fwhm band bands by-group calibration candidates cells change-per-s clouds "
+    "colour device drift exposure-s false-alarm floor frames gap-s grid haze-sd height-m knot-s largest-floor longest-s mag mag-max method nm "
     "norad object objects observer outliers peaks rate-noise rate-sd reflectance-sd samples scale-sd sd-p set shade shadow shortest-s side sky-mag sky-sd "
     "slope-sd sort start step-s stop sun sun-alt-max-deg threads time transparency-sd transparency-time-s up unit width-nm zero-point-sd").split())
 #: What several words of the command are together, and what is said of it alone.

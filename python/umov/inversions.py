@@ -48,8 +48,8 @@ class Fit(NamedTuple):
     haze_sd: float = 0.3  #: the same of the haze of materials without a body
     largest_floor: float = 0.1  #: the same: the floor grows with the misfit of the best attitude, up to this; 0: it stays
     allow_old_elements: bool = False  #: elements over 30 days from the observations are taken all the same
-    tilt_sd_deg: float = 0.0  #: invert_pose and invert_spin: how well the surfaces of each material are aligned to the body about each of its axes; 0: exactly, else it takes longer
-    by_group: bool = False  #: invert_pose and invert_spin: what is not known of materials is of each group of the mesh by itself (areas and alignment of parts); takes longer
+    tilt_sd_deg: float = 0.0  #: invert_pose and invert_spin alone, others refuse it: how well the surfaces of each material are aligned to the body about each of its axes; 0: exactly, else it takes longer
+    by_group: bool = False  #: invert_pose and invert_spin alone, others refuse it: what is not known of materials is of each group of the mesh by itself (areas and alignment of parts); takes longer
 
 
 class Inversion(NamedTuple):

@@ -1,5 +1,6 @@
 #include "inverse/places.h"
 
+#include "inverse/pose_modes.h"
 #include "inverse/some_epochs.h"
 #include "inverse/tempered.h"
 
@@ -111,7 +112,7 @@ std::vector<TurningFit> first_fits(const CurveModel &model, const CurveLikelihoo
 }
 
 std::vector<Turning> apart_first(const std::vector<Turning> &sorted, std::size_t count) {
-  constexpr double same = 0.1 * degree;
+  constexpr double same = 0.3 * degree; // fits that close end as one
   auto out = spread_out(sorted, count, place_wide);
   const std::size_t most = out.size() + count / 2;
   for (std::size_t k = 0; k < sorted.size() && out.size() < most; ++k)
@@ -122,13 +123,17 @@ std::vector<Turning> apart_first(const std::vector<Turning> &sorted, std::size_t
   return out;
 }
 
-bool are_many(const std::vector<TurningFit> &fits) {
+bool are_many(const std::vector<TurningFit> &fits, double span_s) {
   constexpr double near = 20; // in chi-square
   constexpr std::size_t many = 10;
+  const auto modes = modes_of(fits, span_s);
+  if (modes.empty())
+    return false;
+  const double best = std::ranges::min(modes, {}, &PoseMode::chi2).chi2;
   std::vector<Turning> alike;
-  for (const TurningFit &fit : fits)
-    if (fit.at.chi2 < fits.front().at.chi2 + near)
-      alike.push_back(fit.turning);
+  for (const PoseMode &mode : modes)
+    if (mode.chi2 < best + near)
+      alike.push_back(mode.turning);
   return spread_out(alike, many, place_wide).size() == many;
 }
 

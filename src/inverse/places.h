@@ -17,9 +17,9 @@ std::vector<Turning> cooled_places(const SearchModels &models, const std::vector
                                    std::size_t times, const SearchOptions &options);
 
 /// The first steps of a fit of each place, best first. A model whose parts are not quite known is
-/// asked around the best `most` places too: narrow lobes make dents of a part of a degree, which
-/// stand beside each other where parts can make up for a turn, and no fit leaves its own. Empty if
-/// it was stopped.
+/// asked around the best half of `most` places too: narrow lobes make dents of a part of a degree,
+/// which stand beside each other where parts can make up for a turn, and no fit leaves its own.
+/// Empty if it was stopped.
 std::vector<TurningFit> first_fits(const CurveModel &model, const CurveLikelihood &likelihood,
                                    const std::vector<Turning> &places, std::size_t most,
                                    unsigned threads);
@@ -28,7 +28,8 @@ std::vector<TurningFit> first_fits(const CurveModel &model, const CurveLikelihoo
 /// one place are modes of their own, but must not crowd out other places.
 std::vector<Turning> apart_first(const std::vector<Turning> &sorted, std::size_t count);
 
-/// Ten places and more explain the data nearly as well as the best: others were passed by then.
-bool are_many(const std::vector<TurningFit> &fits);
+/// Ten modes and more in different places explain the data nearly as well as the best: others were
+/// passed by then.
+bool are_many(const std::vector<TurningFit> &fits, double span_s);
 
 } // namespace umov::inverse

@@ -395,12 +395,15 @@ Result<std::vector<TurningFit>> fit_places(const SearchModels &models,
   tell_refined(options, effort, 1);
   const auto fits =
       inverse::first_fits(models.first, errors.likelihood(), places, most, options.threads);
-  const auto from = inverse::apart_first(inverse::turnings_of(fits, fits.size()), most);
+  const bool has_parts = !models.first.parts().empty();
+  const auto from = has_parts ? inverse::apart_first(inverse::turnings_of(fits, fits.size()), most)
+                              : inverse::turnings_of(fits, most);
   bool has_changed = false;
   if (fits.empty() || !errors.ask(from, has_changed))
     return tl::unexpected(stopped());
   tell_refined(options, effort, 2);
-  return settled_fits(models.last, from, Freedom::Attitude, effort.kept, errors, options);
+  const std::size_t kept = has_parts ? from.size() : effort.kept; // dents crowd out no place
+  return settled_fits(models.last, from, Freedom::Attitude, kept, errors, options);
 }
 
 /// Why nothing can be fitted, if that is so.
@@ -419,7 +422,7 @@ Result<std::vector<TurningFit>> fits_of_all(const SearchModels &models,
   const Effort usual{times_of(models.last.curve())};
   UMOV_ASSIGN(places, find_places(models, judged, usual, errors, options));
   UMOV_ASSIGN(fits, fit_places(models, places, usual, errors, options));
-  if (!inverse::are_many(fits))
+  if (!inverse::are_many(fits, inverse::span_of(models.last.curve())))
     return std::move(fits);
   const Effort larger{std::min(more * usual.times, most), more * last_fits, "refine more"};
   // Those that are known come first: what comes out is no worse.

@@ -28,24 +28,20 @@ set = "paper_rgb"
 """
 
 
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory):
-    """A folder for what all tests here begin with."""
-    return tmp_path_factory.mktemp("kept")
-
-
 @pytest.fixture
-def library(umov, scene, tmp_path, kept):
-    """Cubesats of four kinds of materials in tmp_path/lib; lib/NAME.umovsig of NAME.toml. place.toml has no mesh."""
+def library(umov, scene, tmp_path, tmp_path_factory):
+    """Cubesats of four kinds of materials in tmp_path/lib; lib/NAME.umovsig of NAME.toml. place.toml has no mesh. Built by the first test
+    that asks for it."""
+    kept = tmp_path_factory.getbasetemp() / "library_of_cubesats"
     text = (tmp_path / scene([1, 0, 0, 0], "masks", "plain")).read_text()
     for name in NAMES[1:]:
         (tmp_path / f"{name}.toml").write_text(variant(text, name))
-    if not (kept / "lib").exists():
+    if not kept.exists():
         done = umov("library", "build", *(f"{name}.toml" for name in NAMES), "-o", "lib", "-q")
         assert done.code == 0, done.err
-        shutil.copytree(tmp_path / "lib", kept / "lib")
+        shutil.copytree(tmp_path / "lib", kept)
     else:
-        shutil.copytree(kept / "lib", tmp_path / "lib")
+        shutil.copytree(kept, tmp_path / "lib")
     (tmp_path / "place.toml").write_text(PLACE.format(root=ROOT))
 
 

@@ -53,31 +53,37 @@ TEST(Places, AFitOfPartsLeavesItsDentForADeeperOneNearby) {
 }
 
 TEST(Places, DentsCrowdOutNoOtherPlace) {
-  std::vector<Turning> sorted;
-  for (int k = 0; k < 20;
-       ++k) // best first: twenty dents within a inverse::degree, then one far away
-    sorted.push_back(turned_by({}, 0.0009 * k, 0, 0));
+  std::vector<Turning> sorted; // best first: twenty dents of one place, then one far away
+  for (int k = 0; k < 20; ++k)
+    sorted.push_back(turned_by({}, 0.0013 * k, 0, 0));
   sorted.push_back(turned_by({}, 0, 1, 0));
   const auto kept = inverse::apart_first(sorted, 4);
-  // The places come first, beside them half of four as dents that are .1 deg from all others.
+  // The places come first, beside them half of four as dents that are .3 deg from all others.
   ASSERT_EQ(kept.size(), 4u);
   EXPECT_EQ(kept[0].attitude.x, sorted[0].attitude.x);
   EXPECT_EQ(kept[1].attitude.y, sorted[20].attitude.y);
-  EXPECT_EQ(kept[2].attitude.x, sorted[2].attitude.x);
-  EXPECT_EQ(kept[3].attitude.x, sorted[4].attitude.x);
+  EXPECT_EQ(kept[2].attitude.x, sorted[5].attitude.x);
+  EXPECT_EQ(kept[3].attitude.x, sorted[10].attitude.x);
 }
 
-TEST(Places, AreManyIfTheyAreApart) {
-  std::vector<inverse::TurningFit> dents(12), apart(12);
-  for (int k = 0; k < 12; ++k) {
-    dents[static_cast<std::size_t>(k)].turning = turned_by({}, 0.002 * k, 0, 0);
-    apart[static_cast<std::size_t>(k)].turning = turned_by({}, 0.1 * k, 0, 0);
+/// Twelve fits that are as good, so far from each other and so wide [rad].
+std::vector<inverse::TurningFit> twelve(double apart, double sd) {
+  std::vector<inverse::TurningFit> out(12);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].turning = turned_by({}, apart * static_cast<double>(k), 0, 0);
+    out[k].information = Eigen::Matrix3d::Identity() / (sd * sd);
   }
-  EXPECT_FALSE(inverse::are_many(dents));
-  EXPECT_TRUE(inverse::are_many(apart));
+  return out;
+}
+
+TEST(Places, AreManyIfTheyAreApartAndNoBasin) {
+  EXPECT_FALSE(inverse::are_many(twelve(0.003, 1e-4), 1)); // dents of one place
+  EXPECT_FALSE(inverse::are_many(twelve(0.1, 0.5), 1));    // one basin
+  auto apart = twelve(0.1, 1e-3);
+  EXPECT_TRUE(inverse::are_many(apart, 1));
   for (std::size_t k = 9; k < apart.size(); ++k)
     apart[k].at.chi2 = 25; // e^-12.5 of the best
-  EXPECT_FALSE(inverse::are_many(apart));
+  EXPECT_FALSE(inverse::are_many(apart, 1));
 }
 
 } // namespace
