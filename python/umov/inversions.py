@@ -141,11 +141,16 @@ def _file_of(light: Any, made: pathlib.Path) -> str:
     return str(made)
 
 
-def _request(files: list[str] | None, fit: Fit | None, method: str = "auto") -> _umov.InvertRequest:
-    """`files` None: there is no light yet. `method`: where the fit names none."""
+def _request(files: list[str] | None, fit: Fit | None, method: str = "auto", *, asks_parts: bool = False) -> _umov.InvertRequest:
+    """`files` None: there is no light yet. `method`: where the fit names none. `asks_parts`: parts of the light are asked one by one, as
+    `tilt_sd_deg` and `by_group` need it; nobody else leaves these aside in silence."""
     fit = Fit() if fit is None else fit
     if not isinstance(fit, Fit):
         raise UsageError(f"fit is a {type(fit).__name__}; a umov.Fit was expected, such as umov.Fit(clouds=True)")
+    if fit.tilt_sd_deg and not asks_parts:
+        raise UsageError(f"tilt_sd_deg is {fit.tilt_sd_deg}; this takes surfaces for aligned, so 0 was expected: only invert_pose and invert_spin ask it")
+    if fit.by_group and not asks_parts:
+        raise UsageError("by_group is True; this asks no group by itself, so False was expected: only invert_pose and invert_spin do")
     if fit.method not in (None, "masks", "auto", "rays"):
         raise UsageError(f"method is {fit.method!r}; auto, rays or masks was expected")
     if files is not None and not files:
@@ -158,15 +163,6 @@ def _request(files: list[str] | None, fit: Fit | None, method: str = "auto") -> 
                             between(fit.haze_sd, "haze_sd", 0, 2), between(fit.tilt_sd_deg, "tilt_sd_deg", 0, 2), bool(fit.by_group),
                             between(fit.largest_floor, "largest_floor", 0, 1))
     return out
-
-
-def _without_parts(fit: Fit | None) -> Fit | None:
-    """What asks parts of the light one by one is not left aside in silence."""
-    if isinstance(fit, Fit) and fit.tilt_sd_deg:
-        raise UsageError(f"tilt_sd_deg is {fit.tilt_sd_deg}; this takes surfaces for aligned, so 0 was expected: only invert_pose and invert_spin ask it")
-    if isinstance(fit, Fit) and fit.by_group:
-        raise UsageError("by_group is True; this asks no group by itself, so False was expected: only invert_pose and invert_spin do")
-    return fit
 
 
 def _inversion(found: _umov.Inversion) -> Inversion:
@@ -216,7 +212,7 @@ def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, An
     """
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
-        return _inversion(_umov.invert_pose(asked._scenario, _request(files, fit), job_options(threads, cache, device=device), Watch(progress)))
+        return _inversion(_umov.invert_pose(asked._scenario, _request(files, fit, asks_parts=True), job_options(threads, cache, device=device), Watch(progress)))
 
 
 def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | None = None, aliases: bool = True,
@@ -271,7 +267,7 @@ def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | No
     period = 0.0 if period_s is None else between(period_s, "period_s", 1e-3, 1e7)
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
-        return _inversion(_umov.invert_spin(asked._scenario, _request(files, fit), period, bool(aliases),
+        return _inversion(_umov.invert_spin(asked._scenario, _request(files, fit, asks_parts=True), period, bool(aliases),
                                             "" if axis == "any" else axis, job_options(threads, cache, device=device), Watch(progress)))
 
 
@@ -321,7 +317,7 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
         raise UsageError(f"candidates is {candidates!r}; a list of names of materials, or of Materials, was expected")
     asked, words = _with_materials(Scenario(scenario, set), candidates, "candidates")
     with _files_of(light) as (files,):
-        return _inversion(_umov.invert_material(asked._scenario, _request(files, _without_parts(fit)), str(group), words,
+        return _inversion(_umov.invert_material(asked._scenario, _request(files, fit), str(group), words,
                                                 job_options(threads, cache, device=device), Watch(progress)))
 
 
@@ -375,7 +371,7 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     drifts = [f"{group}={material}" for group, material in zip(drift, names)]
     sd = between(attitude_sd_deg, "attitude_sd_deg", 0, 30)
     with _files_of(light, baseline) as (files, before):
-        return _inversion(_umov.invert_health(asked._scenario, _request(files, _without_parts(fit)), drifts, before, sd,
+        return _inversion(_umov.invert_health(asked._scenario, _request(files, fit), drifts, before, sd,
                                               job_options(threads, cache, device=device), Watch(progress)))
 
 
@@ -446,7 +442,7 @@ def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], 
     ratio = 0.0 if snr is None else between(snr, "snr", 0.1, 1e6)
     weights = [between(chances.get(name, 1.0), "priors", 1e-9, 1e9) for name in alternatives]
     return _inversion(_umov.invert_plan(asked._scenario, [str(name) for name in alternatives], [one._scenario for one in others],
-                                        weights, _request(None, _without_parts(fit)), ratio, between(sky_mag, "sky_mag", -5, 40),
+                                        weights, _request(None, fit), ratio, between(sky_mag, "sky_mag", -5, 40),
                                         job_options(threads, cache, device=device), Watch(progress)))
 
 
@@ -507,7 +503,7 @@ def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike
     prior = between(none_prior, "none_prior", 1e-6, 0.999)
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
-        return _inversion(_umov.identify(asked._scenario, _request(files, _without_parts(fit)), path_text(library, "library"),
+        return _inversion(_umov.identify(asked._scenario, _request(files, fit), path_text(library, "library"),
                                          [path_text(one, "objects") for one in objects], prior, job_options(threads, cache, device=device),
                                          Watch(progress)))
 

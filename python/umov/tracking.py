@@ -12,7 +12,7 @@ from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._numbers import between, path_text
 from .errors import UsageError
-from .inversions import AnyCurves, Fit, Inversion, _files_of, _inversion, _request, _without_parts
+from .inversions import AnyCurves, Fit, Inversion, _files_of, _inversion, _request
 from .scenarios import AnyScenario, Scenario
 
 __all__ = ["invert_track"]
@@ -91,5 +91,5 @@ def invert_track(light: AnyCurves, scenario: AnyScenario, start: Inversion | str
     sd = between(rate_sd, "rate_sd", 1e-9, 10)
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,), _start_of(start) as named:
-        return _inversion(_umov.invert_track(asked._scenario, _request(files, _without_parts(fit), "masks"), named, walk, sd,
+        return _inversion(_umov.invert_track(asked._scenario, _request(files, fit, "masks"), named, walk, sd,
                                              job_options(threads, cache, device=device), Watch(progress)))

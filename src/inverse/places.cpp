@@ -34,18 +34,16 @@ std::vector<TurningFit> fits_of(const FewSteps &round, const CurveModel &model,
                       {Freedom::Attitude, round.steps, 0, 0, 2e-3, options.threads});
 }
 
-constexpr std::size_t looked_at = 48, kept = 3; // around each place
-constexpr double far = 3 * degree;
-
 /// The kth of points that fill a ball evenly (additive recurrence of three numbers: Roberts 2018,
 /// "The unreasonable effectiveness of quasirandom sequences").
 Step point_in_ball(std::size_t k) {
+  constexpr double radius = 3 * degree;
   constexpr double g = 1.2207440846057596; // g^4 = g + 1
   const auto part = [&](int power) {
     const double x = 0.5 + static_cast<double>(k + 1) / std::pow(g, power);
     return x - std::floor(x);
   };
-  const double r = far * std::cbrt(part(1)), z = 1 - 2 * part(2), a = 2 * pi * part(3);
+  const double r = radius * std::cbrt(part(1)), z = 1 - 2 * part(2), a = 2 * pi * part(3);
   const double across = r * std::sqrt(1 - z * z);
   return Eigen::Vector3d(across * std::cos(a), across * std::sin(a), r * z);
 }
@@ -53,6 +51,7 @@ Step point_in_ball(std::size_t k) {
 /// The best few of many attitudes around each place; empty if it was stopped.
 std::vector<Turning> look_around(const CurveModel &model, const CurveLikelihood &likelihood,
                                  const std::vector<Turning> &places, unsigned threads) {
+  constexpr std::size_t looked_at = 48, kept = 3; // around each place
   const double span = span_of(model.curve());
   std::vector<Turning> near;
   for (const Turning &place : places)
@@ -74,7 +73,7 @@ std::vector<Turning> look_around(const CurveModel &model, const CurveLikelihood 
 
 std::vector<Turning> cooled_places(const SearchModels &models, const std::vector<Turning> &sorted,
                                    std::size_t times, const SearchOptions &options) {
-  const bool has_parts = !models.first.parts().empty(); // their fits take ten times as long
+  const bool has_parts = !models.first.parts().empty(); // whose fits take many times as long
   constexpr std::size_t left = 600, last = 60;          // fits that go on; places
   const std::size_t first = has_parts ? 40 : 80, as_told = has_parts ? 40 : last;
   constexpr FewSteps forgiving{0.25, 20, 3}, strict{0.08, 60, 4}, of_parts{0.08, 20, 2};
