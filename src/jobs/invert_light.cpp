@@ -86,8 +86,9 @@ void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOpt
                 Diagnostics &diagnostics, const std::atomic<bool> *cancel) {
   if (!request.materials.is_any()) {
     if (request.materials.is_by_group)
-      diagnostics.warn("--by-group has nothing to ask of each group: materials are taken for right, "
-                       "as all of --slope-sd, --reflectance-sd, --haze-sd and --tilt-sd are 0");
+      diagnostics.warn(
+          "--by-group has nothing to ask of each group: materials are taken for right, "
+          "as all of --slope-sd, --reflectance-sd, --haze-sd and --tilt-sd are 0");
     return;
   }
   if (request.method != LightMethod::Rays)
