@@ -122,6 +122,24 @@ std::vector<EndMember> joined(const std::vector<EndMember> &members,
   return out;
 }
 
+/// How far off the part of joined members is, relative, as nobody knows which of them gives the
+/// light: as much of it as their mean is more of a dim one and less of a bright one.
+double spread_of(const std::vector<std::size_t> &group, std::size_t leader,
+                 const MatrixXd &columns) {
+  constexpr double most = 10; // times: of one without light any part may be there
+  std::vector<double> length;
+  for (std::size_t k = 0; k < group.size(); ++k)
+    if (group[k] == leader)
+      length.push_back(columns.col(static_cast<Index>(k)).norm());
+  const auto count = static_cast<double>(length.size());
+  const double mean = std::reduce(length.begin(), length.end()) / count;
+  double square = 0;
+  for (const double one : length)
+    if (mean > 0)
+      square += std::pow(std::min(mean / std::max(one, mean / most), most) - 1, 2) / count;
+  return std::sqrt(square);
+}
+
 /// NaN where a column is 0: it has no direction.
 double condition_of(const MatrixXd &columns) {
   if ((columns.colwise().squaredNorm().array() <= 0).any())
@@ -173,8 +191,14 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
     slope.row(g).setConstant(-x[g] / (sum * sum));
     slope(g, g) += 1 / sum;
   }
-  const MatrixXd of_fractions =
-      algebra::product(algebra::product(slope, covariance), slope.transpose());
+  MatrixXd with_spread = covariance;
+  for (Index g = 0; g < x.size(); ++g)
+    with_spread(g, g) +=
+        std::pow(x[g] * spread_of(group, first[static_cast<std::size_t>(g)], w.columns), 2);
+  const auto of_parts = [&](const MatrixXd &parts) -> MatrixXd {
+    return algebra::product(algebra::product(slope, parts), slope.transpose());
+  };
+  const MatrixXd of_changes = of_parts(covariance), of_fractions = of_parts(with_spread);
   const bool has_light = x.sum() > 0;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   for (Index g = 0; g < x.size(); ++g) {
@@ -183,7 +207,8 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
     one.fraction = has_light ? x[g] / sum : unknown;
     one.fraction_err = x.size() < 2 ? 0 : std::sqrt(std::max(0.0, of_fractions(g, g)));
     one.fraction_err = has_light ? one.fraction_err : unknown;
-    one.detectable = has_light && x.size() > 1 ? 3 * one.fraction_err : unknown;
+    one.detectable =
+        has_light && x.size() > 1 ? 3 * std::sqrt(std::max(0.0, of_changes(g, g))) : unknown;
     for (Index h = 0; h < x.size(); ++h)
       out.covariance.push_back(of_fractions(g, h));
   }

@@ -2,6 +2,8 @@
 
 #include "jobs/curve_limits.h"
 #include "jobs/fit_figures.h"
+#include "jobs/u_null_test.h"
+#include "jobs/verdict_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +129,8 @@ std::string health_page(const std::string &title, const Table &fit, const Health
   return page ? *page : std::string();
 }
 
-std::string json_of(const Health &health, Verdict verdict, const std::vector<std::string> &notes) {
+std::string json_of(const Health &health, const NullTest &u, Verdict verdict,
+                    const std::vector<std::string> &notes) {
   using nlohmann::ordered_json;
   ordered_json out;
   out["program"] = "umov";
@@ -147,6 +150,7 @@ std::string json_of(const Health &health, Verdict verdict, const std::vector<std
                     {"settled", row.is_settled},
                     {"visible", is_visible(row)}});
   out["health"] = list;
+  put_null_test(u, out);
   out["notes"] = notes;
   return out.dump(1) + "\n";
 }
@@ -166,7 +170,8 @@ Verdict verdict_of(const Health &health, const Health *baseline) {
 }
 
 std::vector<std::string> notes_of(const Health &health, const Health *baseline, Verdict verdict,
-                                  const ObservedCurve &curve, const CurveErrors &errors) {
+                                  const NullTest &u, const ObservedCurve &curve,
+                                  const CurveErrors &errors) {
   std::vector<std::string> out = limits_of(curve, errors, Asked::Part);
   std::size_t changed = 0;
   for (const HealthRow &row : health.rows) {
@@ -196,6 +201,8 @@ std::vector<std::string> notes_of(const Health &health, const Health *baseline, 
   else if (verdict == Verdict::NoFit)
     out.emplace_back("none of these changes explains the data within their errors and --floor: is "
                      "the attitude right, and the object?");
+  if (auto words = words_of(u))
+    out.push_back(std::move(*words));
   if (errors.has_clouds)
     out.emplace_back("--clouds is not looked at here: the sky is taken for clear");
   return out;

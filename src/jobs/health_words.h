@@ -4,6 +4,7 @@
 #include "jobs/invert_parts.h"
 
 #include <umov/inverse/health.h>
+#include <umov/inverse/null_test.h>
 #include <umov/jobs/invert.h>
 
 namespace umov::jobs {
@@ -22,12 +23,14 @@ Table parts_table(const std::vector<PartHealth> &parts);
 std::string health_page(const std::string &title, const Table &fit, const Health &health,
                         const std::vector<PartHealth> &parts, const std::string &summary);
 /// verdict.json.
-std::string json_of(const Health &health, Verdict verdict, const std::vector<std::string> &notes);
+std::string json_of(const Health &health, const NullTest &u, Verdict verdict,
+                    const std::vector<std::string> &notes);
 /// One change explains the data; several do, or one that cannot be; none was needed, or could be
 /// seen; nothing does. `baseline`: what it showed by itself, if there is one.
 Verdict verdict_of(const Health &health, const Health *baseline);
-/// What the answer rests on, and what it cannot tell.
+/// What the answer rests on, and what it cannot tell. `u`: of the best fit.
 std::vector<std::string> notes_of(const Health &health, const Health *baseline, Verdict verdict,
-                                  const ObservedCurve &curve, const CurveErrors &errors);
+                                  const NullTest &u, const ObservedCurve &curve,
+                                  const CurveErrors &errors);
 
 } // namespace umov::jobs

@@ -3,6 +3,7 @@
 #include "jobs/health_words.h"
 #include "jobs/invert_group.h"
 #include "jobs/invert_tables.h"
+#include "jobs/u_null_test.h"
 
 #include <algorithm>
 #include <cmath>
@@ -156,13 +157,14 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
   }
   const Health *const shown = before ? &*before : nullptr;
   out.verdict = verdict_of(health, shown);
-  const auto notes = notes_of(health, shown, out.verdict, observed.curve, request.errors);
+  const NullTest u = null_test_of(observed.curve, health.fitted.i, health.fitted.u);
+  const auto notes = notes_of(health, shown, out.verdict, u, observed.curve, request.errors);
   out.summary =
       fmt::format("{}: chi-square {:.4g} of {} without any change\n", name_of(out.verdict),
                   health.chi2, counted(health.measurements, "measurement"));
   for (const std::string &text : notes)
     out.summary += "- " + text + "\n";
-  out.json = json_of(health, out.verdict, notes);
+  out.json = json_of(health, u, out.verdict, notes);
   const auto parts = healths_of(light, old ? &*old : nullptr, request.errors);
   out.tables = {{"health", health_table(health, out.verdict)},
                 {"parts", parts_table(parts)},

@@ -3,6 +3,8 @@
 #include "jobs/invert_group.h"
 #include "jobs/invert_parts.h"
 #include "jobs/invert_tables.h"
+#include "jobs/u_null_test.h"
+#include "jobs/verdict_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +84,8 @@ Table materials_table(const std::string &group, const std::vector<Row> &rows) {
 }
 
 std::string json_of(const std::string &group, const std::vector<Row> &rows, const Unmixing &unmixed,
-                    Verdict verdict, double chi2, const std::vector<std::string> &notes) {
+                    const NullTest &u, Verdict verdict, double chi2,
+                    const std::vector<std::string> &notes) {
   using nlohmann::ordered_json;
   ordered_json out;
   out["program"] = "umov";
@@ -102,6 +105,7 @@ std::string json_of(const std::string &group, const std::vector<Row> &rows, cons
                     {"fraction_err", row.unmixed.fraction_err},
                     {"detectable", row.unmixed.detectable}});
   out["materials"] = list;
+  put_null_test(u, out);
   out["notes"] = notes;
   return out.dump(1) + "\n";
 }
@@ -259,6 +263,9 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   std::vector<std::string> notes = limits_of(observed.curve, request.errors, Asked::Part);
   std::ranges::move(notes_of(rows, unmixed, out.verdict, chi2, members, request.errors.has_clouds),
                     std::back_inserter(notes));
+  const NullTest u = null_test_of(observed.curve, unmixed.fitted.i, unmixed.fitted.u);
+  if (auto words = words_of(u))
+    notes.push_back(std::move(*words));
   out.summary =
       fmt::format("{}: {} of {}; one material alone: chi-square {:.4g}, a mixture {:.4g}, "
                   "of {} measurements",
@@ -269,7 +276,7 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
                      : fmt::format("; condition {:.3g}\n", unmixed.condition);
   for (const std::string &text : notes)
     out.summary += "- " + text + "\n";
-  out.json = json_of(material.group, rows, unmixed, out.verdict, chi2, notes);
+  out.json = json_of(material.group, rows, unmixed, u, out.verdict, chi2, notes);
   std::vector<PartAnswer> of_first;
   const auto parts = parts_of(observed.curve, request.errors.has_polarization);
   out.tables = {{"materials", materials_table(material.group, rows)},

@@ -2,6 +2,7 @@
 
 #include "jobs/curve_limits.h"
 #include "jobs/invert_tables.h"
+#include "jobs/u_null_test.h"
 #include "jobs/verdict_json.h"
 
 #include <algorithm>
@@ -47,20 +48,6 @@ Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
   constexpr double far_deg = 10; // a single peak as wide as that is no attitude
   return families.spread_deg < far_deg ? Verdict::Determined : Verdict::Undetermined;
 }
-
-namespace {
-
-/// U/I of the best fit in every sample: bodies of paint have some without any instrument.
-std::vector<double> fitted_u(const BestLight &best, const ObservedCurve &curve) {
-  std::vector<double> out(curve.samples.size(), 0);
-  for (std::size_t k = 0; k < out.size() && !best.light.i.empty(); ++k) {
-    const std::size_t at = curve.samples[k].epoch * curve.bands.size() + curve.samples[k].band;
-    out[k] = best.light.i[at] > 0 ? best.light.u[at] / best.light.i[at] : 0;
-  }
-  return out;
-}
-
-} // namespace
 
 namespace {
 
@@ -144,7 +131,7 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
     out.verdict = Verdict::Ambiguous;
   out.axis_spread_deg = axis_spread_deg(answer);
   const BestLight best = best_light(model, answer);
-  out.null_test = null_test(curve, fitted_u(best, curve));
+  out.null_test = null_test_of(curve, best.light.i, best.light.u);
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
   add_parts(model.parts(), best, out);
   out.notes = limits_of(curve, errors, Asked::Attitude);
@@ -152,12 +139,8 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   doubt_fit(answer, errors, out);
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
-  if (out.null_test.is_flagged())
-    out.notes.push_back(fmt::format(
-        "U of the scattering plane is not what the best fit has: polarization of the "
-        "instrument of ({:.4f} +- {:.4f}, {:.4f} +- {:.4f}) would explain it; calibrate, or "
-        "suspect light between surfaces",
-        out.null_test.q0, out.null_test.q0_sd, out.null_test.u0, out.null_test.u0_sd));
+  if (auto words = words_of(out.null_test))
+    out.notes.push_back(std::move(*words));
   if (!answer.is_settled)
     out.notes.emplace_back("the search did not come to rest: a better attitude than these may be "
                            "near; a larger --grid or --floor may help");

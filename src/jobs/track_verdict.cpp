@@ -2,6 +2,7 @@
 
 #include "jobs/curve_limits.h"
 #include "jobs/track_tables.h"
+#include "jobs/u_null_test.h"
 #include "jobs/verdict_json.h"
 
 #include <algorithm>
@@ -72,16 +73,6 @@ void note_doubts(const TrackStart &now, const TrackHistory &history, const PoseA
                                   chance_of(answer)));
 }
 
-/// U/I of the fit in every sample.
-std::vector<double> fitted_u(const ObservedCurve &curve, const EndMember &fitted) {
-  std::vector<double> out;
-  for (const ObservedSample &s : curve.samples) {
-    const std::size_t at = s.epoch * curve.bands.size() + s.band;
-    out.push_back(fitted.i[at] > 0 ? fitted.u[at] / fitted.i[at] : 0);
-  }
-  return out;
-}
-
 } // namespace
 
 Judgement judge_track(const TrackStart &now, const TrackFrame &frame, const TrackHistory &history,
@@ -91,7 +82,7 @@ Judgement judge_track(const TrackStart &now, const TrackFrame &frame, const Trac
   out.families = families_of(answer, symmetries);
   out.verdict = first_verdict(now, history, answer, out.families);
   out.axis_spread_deg = axis_spread_deg(answer);
-  out.null_test = null_test(curve, fitted_u(curve, fitted));
+  out.null_test = null_test_of(curve, fitted.i, fitted.u);
   if (out.verdict == Verdict::Determined && is_steady(curve, frame.errors))
     out.verdict = Verdict::Undetermined;
   note_doubts(now, history, answer, frame.errors, out);
@@ -100,13 +91,8 @@ Judgement judge_track(const TrackStart &now, const TrackFrame &frame, const Trac
       out.notes.push_back(std::move(limit));
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
-  if (out.null_test.is_flagged())
-    out.notes.push_back(fmt::format(
-        "U of the scattering plane is not what the fit has: polarization of the instrument of "
-        "({:.4f} +- {:.4f}, {:.4f} +- {:.4f}) would explain it; calibrate, or suspect light "
-        "between "
-        "surfaces",
-        out.null_test.q0, out.null_test.q0_sd, out.null_test.u0, out.null_test.u0_sd));
+  if (auto words = words_of(out.null_test))
+    out.notes.push_back(std::move(*words));
   return out;
 }
 

@@ -17,8 +17,11 @@ struct EndMember {
 /// Materials that the data cannot tell apart, as one.
 struct UnmixedGroup {
   std::vector<std::string> names;
-  double fraction = 0, fraction_err = 0; ///< of the part's area; NaN: the data hold no light
-  /// Smallest change of the fraction that shows at three standard deviations; NaN: none does.
+  /// Of the part's area; NaN: the data hold no light. The error has in it that nobody knows which
+  /// of the names gives the light: of a dim one it takes more.
+  double fraction = 0, fraction_err = 0;
+  /// Smallest change of the fraction that shows at three standard deviations of the noise; NaN:
+  /// none does.
   double detectable = 0;
 };
 

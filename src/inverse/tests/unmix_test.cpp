@@ -102,12 +102,32 @@ TEST(Unmix, FractionsComeBackWithinTheirErrors) {
     square += off * off / trials;
     bias += off / trials;
     EXPECT_NEAR(found.groups[0].fraction + found.groups[1].fraction, 1, 1e-9);
-    EXPECT_DOUBLE_EQ(found.groups[0].detectable, 3 * found.groups[0].fraction_err);
+    EXPECT_NEAR(found.groups[0].detectable, 3 * found.groups[0].fraction_err, 1e-6);
   }
   // No zero points were wrong here, but they may be: pulls are below 1, not far.
   EXPECT_LT(square, 1.5);
   EXPECT_GT(square, 0.3);
   EXPECT_NEAR(bias, 0, 0.35);
+}
+
+TEST(Unmix, WhichOfTwoThatAreAlikeGivesTheLightIsPartOfTheError) {
+  // 30 % of metal, 70 % of paint; another candidate is the same paint thrice as bright. As much
+  // light as of their mean (2) is 2 times as much area of the dim and 2/3 of the bright: the part
+  // of metal comes out as .3/(.3 + .35), and its error is .3/.65^2 times .35 sqrt((1 + 1/9)/2).
+  CurveErrors errors;
+  errors.floor = errors.floor_median = 0;
+  errors.zero_point_sd = 1e-6;
+  Case c = mixture(0.3, 0.7, 5);
+  c.members[2] = c.members[1];
+  c.members[2].name = "bright paint";
+  for (double &light : c.members[2].i)
+    light *= 3;
+  const Unmixing found = unmix(c.curve, errors, c.members);
+  ASSERT_EQ(found.groups.size(), 2u);
+  const UnmixedGroup &metal = found.groups[0];
+  EXPECT_NEAR(metal.fraction, 0.4615, 0.01); // noise: 80 numbers of 2 %
+  EXPECT_NEAR(metal.fraction_err, 0.185, 0.01);
+  EXPECT_LT(metal.detectable, 0.03); // a change is seen all the same
 }
 
 TEST(Unmix, NeitherPolarizationNorZeroPointsPullTheScale) {
