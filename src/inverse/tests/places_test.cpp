@@ -17,10 +17,11 @@ bool dented(std::span<const Pose> poses, StokesTable &out) {
   return true;
 }
 
-/// The same, and once more as the light of its one part.
-bool dented_parts(std::span<const Pose> poses, StokesTable &out) {
+/// Light, and once more as that of its one part.
+template <bool (*light)(std::span<const Pose>, StokesTable &)>
+bool with_part(std::span<const Pose> poses, StokesTable &out) {
   StokesTable all;
-  (void)dented(poses, all);
+  (void)light(poses, all);
   out.resize(poses.size(), 2 * all.bands);
   for (std::size_t k = 0; k < poses.size(); ++k)
     for (std::size_t b = 0; b < out.bands; ++b) {
@@ -40,7 +41,7 @@ TEST(Places, AFitOfPartsLeavesItsDentForADeeperOneNearby) {
   observe(curve, dented, {truth, {}}, 100, 1);
   const CurveLikelihood likelihood(curve, no_floor());
   const CurveModel known(curve, dented, {0, 1});
-  const CurveModel parted(curve, dented_parts, {0, 1}, {{"all", 0.1, 0}});
+  const CurveModel parted(curve, with_part<dented>, {0, 1}, {{"all", 0.1, 0}});
   const std::vector<Turning> start{turned_by(truth, 0.02, 0.03, 0.02)}; // 2.4 deg
   const auto alone = inverse::first_fits(known, likelihood, start, 24, 1);
   ASSERT_EQ(alone.size(), 1u);
@@ -50,6 +51,39 @@ TEST(Places, AFitOfPartsLeavesItsDentForADeeperOneNearby) {
   EXPECT_LT(around[0].at.chi2, alone[0].at.chi2 - 20); // e^10 likelier, if not yet the truth
   EXPECT_LT(angle_between(around[0].turning.attitude, truth),
             angle_between(alone[0].turning.attitude, truth) / 2);
+}
+
+bool plain_box(std::span<const Pose> poses, StokesTable &out) { return Box()(poses, out); }
+
+/// Light that finds the box a quarter of a turn from where it is.
+bool misleading(std::span<const Pose> poses, StokesTable &out) {
+  std::vector<Pose> aside(poses.begin(), poses.end());
+  for (Pose &p : aside)
+    for (Vec3<Body> *v : {&p.sun, &p.observer})
+      *v = {v->x, -v->z, v->y};
+  return Box()(aside, out);
+}
+
+TEST(Places, UnknownPartsHaveARoundOfTheirOwn) {
+  ObservedCurve curve = pass(24);
+  const Quaternion truth = turned({}, Vec3<Body>{0.3, 0.5, 0.7});
+  observe(curve, Box(), {truth, {}}, 100, 1);
+  SearchOptions options = small();
+  options.errors = no_floor();
+  options.starts = 500; // all that are looked at
+  options.threads = 1;
+  std::vector<Turning> looked_at; // the truth's neighbour as unlikely as any
+  for (const Quaternion &q : attitude_grid(400))
+    looked_at.push_back({q, {}});
+  looked_at.push_back(turned_by(truth, 0.03, 0.03, 0.03));
+  const CurveModel quick(curve, misleading, {0, 1}), known(curve, plain_box, {0, 1});
+  const CurveModel parted(curve, with_part<plain_box>, {0, 1}, {{"all", 0.1, 0}});
+  const auto as_told = inverse::cooled_places({known, known, quick}, looked_at, 1, options);
+  ASSERT_FALSE(as_told.empty());
+  EXPECT_GT(angle_between(as_told[0].attitude, truth), 20 * inverse::degree); // quick light's own
+  const auto of_parts = inverse::cooled_places({parted, parted, quick}, looked_at, 1, options);
+  ASSERT_FALSE(of_parts.empty());
+  EXPECT_LT(angle_between(of_parts[0].attitude, truth), 2 * inverse::degree);
 }
 
 TEST(Places, DentsCrowdOutNoOtherPlace) {
