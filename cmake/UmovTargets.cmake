@@ -135,11 +135,13 @@ function(umov_module name)
   endif()
 endfunction()
 
+# umov_tests(NAME LABEL ... SOURCES ... LIBRARIES ...): a program of tests. SLOW: those of half of its time, which a first
+# build leaves to `./test --gates`; LONG: those that `./test --all` asks alone.
 function(umov_tests name)
   if(NOT UMOV_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "" "LABEL" "SOURCES;LIBRARIES;LONG" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL" "SOURCES;LIBRARIES;SLOW;LONG" ${ARGN})
   set(target umov_${name}_tests)
   add_executable(${target} ${arg_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
@@ -152,14 +154,21 @@ function(umov_tests name)
                                                $<$<BOOL:${UMOV_SANITIZE}>:UMOV_SANITIZED>)
   umov_in_pieces(4 ${target})
   include(GoogleTest)
-  list(JOIN arg_LONG ":" long_ones)
-  set(not_long "")
-  if(long_ones)
-    set(not_long TEST_FILTER -${long_ones})
-    gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 TEST_FILTER ${long_ones}
-                         TEST_LIST ${target}_LONG PROPERTIES LABELS long)
+  set(others "")
+  foreach(label IN ITEMS SLOW LONG)
+    list(JOIN arg_${label} ":" named)
+    if(named)
+      string(TOLOWER ${label} lower)
+      gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 TEST_FILTER ${named}
+                           TEST_LIST ${target}_${label} PROPERTIES LABELS ${lower})
+      list(APPEND others ${named})
+    endif()
+  endforeach()
+  if(others)
+    list(JOIN others ":" others)
+    set(others TEST_FILTER -${others})
   endif()
-  gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 ${not_long}
+  gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 ${others}
                        PROPERTIES LABELS ${arg_LABEL})
   if(arg_LABEL STREQUAL "long") # built for `./test --all` alone
     set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)

@@ -95,7 +95,7 @@ def names():
             "curve": umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 30})}
 
 
-@pytest.mark.parametrize("module", ["__init__", *MODULES])
+@pytest.mark.parametrize("module", ["__init__", *(pytest.param(one, marks=pytest.mark.slow) if one in ("inversions", "tracking") else one for one in MODULES)])
 def test_examples_run(module, names, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = umov if module == "__init__" else importlib.import_module(f"umov.{module}")

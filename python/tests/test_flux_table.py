@@ -71,13 +71,13 @@ def test_what_cannot_be_known_is_refused(tmp_path):
 def test_an_inversion_takes_it():
     """The same light as umov's own table: the same answer."""
     scene = EXAMPLES / "agena_maui.toml"
-    curve = umov.run(scene, set={"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20,
-                                 "bands.set": ["nm:550"]})
+    asked = {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "bands.set": ["nm:550"]}
+    curve = umov.run(scene, set={**asked, "time.step_s": 20})
     light = np.asarray(curve["I"]).ravel()
     series = TimeSeries({"flux": light, "flux_err": 0.01 * light}, time=curve.time)
-    options = {"set": {"bands.set": ["nm:550"]}, "fit": umov.Fit(grid=1000, slope_sd=0, reflectance_sd=0, haze_sd=0)}
-    found = umov.invert_pose(umov.flux_table(series, "nm:550"), scene, **options)
-    assert found.verdict in ("determined", "ambiguous", "undetermined")
+    found = umov.invert_material(umov.flux_table(series, "nm:550"), scene, group="paint_white", candidates=["paint_white", "paint_black"], set=asked)
+    of = found.tables["materials"]
+    assert found.verdict == "determined" and of["material"][int(np.argmax(of["probability"]))] == "paint_white"
     assert len(found.tables["fit"]) == len(series)
 
 

@@ -105,7 +105,7 @@ def poses_of(number, engine):
     return engine.evaluate(*umov.random_poses(500, 60, seed=number)).tobytes()
 
 
-@pytest.mark.parametrize("pool", ["threads", "processes"])
+@pytest.mark.parametrize("pool", ["threads", pytest.param("processes", marks=pytest.mark.slow)])
 def test_side_by_side_gives_the_same_bytes(pool, hst):
     engine = umov.Engine(hst, bands=["nm:550"], method="masks", threads=1)
     alone = [poses_of(k, engine) for k in range(4)]
@@ -135,6 +135,7 @@ def resident_kb():
     return int(next(line for line in open("/proc/self/status") if line.startswith("VmRSS")).split()[1])
 
 
+@pytest.mark.slow
 def test_cycles_leak_nothing(glass):
     scenario = umov.Scenario(glass)
 

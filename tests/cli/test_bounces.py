@@ -111,6 +111,7 @@ def test_a_warm_body_shines_by_itself(umov, scenario, tmp_path):
         assert done.code == 2 and text in done.err, done.err
 
 
+@pytest.mark.slow
 def test_passes_count_light_between_surfaces(umov, scenario, tmp_path):
     assert umov("mesh", "make", "box-wing", "--facets", 1000, "-o", "cube.obj").code == 0
     brightest = []
@@ -157,7 +158,7 @@ OBJECTS = {
 }
 
 
-@pytest.mark.parametrize("which", [which if which == "box_wing" else pytest.param(which, marks=pytest.mark.long) for which in OBJECTS])
+@pytest.mark.parametrize("which", [pytest.param(which, marks=pytest.mark.slow if which == "box_wing" else pytest.mark.long) for which in OBJECTS])
 def test_stokes_agree_with_mitsubas_path_tracer(umov, tmp_path, which):
     """tests/data/bounces: I, Q, U and V of 40 geometries at 1, 2 and 5 surfaces, chi-square at 1 %."""
     mesh, groups = OBJECTS[which]

@@ -395,6 +395,7 @@ def test_a_library_that_tells_nothing_is_read_and_told(umov, scenario, tmp_path)
         assert ("scenario: between its nodes the light is off by" in done.err) == (state == "made"), done.err
 
 
+@pytest.mark.slow
 def test_bench_puts_cards_beside_cores(umov, settings, tmp_path):
     settings()
     assert umov("mesh", "make", "box-wing", "--facets", 200, "-o", "box.obj").code == 0

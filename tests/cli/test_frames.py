@@ -35,9 +35,9 @@ def frames(tmp_path):
 
 # A tracked star, a trail of some 70 px, and a fit of the image where it is two pixels wide.
 AGREE = [("c11_imx250", 'exposure_s = 0.02\nframe_px = [72, 72]', "", 1, "30"),
-         ("c11_imx250", 'exposure_s = 0.01\nframe_px = [160, 160]', 'tracking = "sidereal"', 1, "20"),
+         pytest.param("c11_imx250", 'exposure_s = 0.01\nframe_px = [160, 160]', 'tracking = "sidereal"', 1, "20", marks=pytest.mark.slow),
          ("c11_imx250", 'exposure_s = 0.02\nframe_px = [72, 72]\nphotometry = "image"', "", 0.6, "30"),
-         ("hwp_wollaston_1m", 'exposure_s = 0.004\ncadence_s = 0.01\nframe_px = [64, 64]', "", 1.6, "45")]
+         pytest.param("hwp_wollaston_1m", 'exposure_s = 0.004\ncadence_s = 0.01\nframe_px = [64, 64]', "", 1.6, "45", marks=pytest.mark.slow)]
 
 
 @pytest.mark.parametrize("instrument, observation, telescope, seeing, stop", AGREE)

@@ -75,6 +75,7 @@ def test_each_object_is_found_in_its_own_light(umov, scene, library, tmp_path, n
     assert re.search(r"none of these (< 0\.01|\d+(\.\d+)?) %\.", (tmp_path / "out/log.txt").read_text())  # not 2e-31 %
 
 
+@pytest.mark.slow
 def test_an_object_that_is_not_in_the_library_is_none(umov, scene, library, tmp_path):
     truth_of(umov, scene, tmp_path, "plain", TRUTHS[0], 100, 1)
     (tmp_path / "lib/plain.umovsig").unlink()
@@ -82,6 +83,7 @@ def test_an_object_that_is_not_in_the_library_is_none(umov, scene, library, tmp_
     assert found["verdict"] == "no_fit" and found["none_of_these"] > 0.95
 
 
+@pytest.mark.slow
 def test_what_cannot_be_told_is_not_told(umov, library, tmp_path):
     for seed, snr in enumerate((2, 30)):
         constant(tmp_path / "obs.csv", snr, seed)
@@ -103,6 +105,7 @@ def test_one_epoch_and_no_number(umov, scene, library, tmp_path):
     assert done.code == 3 and "no row holds a measurement" in done.err
 
 
+@pytest.mark.slow
 def test_threads_change_no_byte(umov, scene, library, tmp_path):
     truth_of(umov, scene, tmp_path, "dark", TRUTHS[2], 20, 5)
     for threads in (1, 2):

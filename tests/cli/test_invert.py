@@ -115,6 +115,7 @@ def test_blind_attitudes_are_found_or_lie_in_the_set(umov, scene, tmp_path):
     assert inside >= 2  # of 3 at 95 %: one outside is one in seven such tests
 
 
+@pytest.mark.slow
 def test_a_fit_that_chance_does_not_explain_is_not_determined(umov, scene, tmp_path):
     """Errors told as two thirds of what they are more than double chi-square, to less than the 2 of a degree of freedom of no_fit."""
     truth = TRUTHS[0]
@@ -185,6 +186,7 @@ def test_a_sphere_tells_nothing(umov, scene, tmp_path):
     assert verdict["share_of_so3"] > 0.5
 
 
+@pytest.mark.slow
 def test_materials_that_are_nearly_known_give_the_answer_of_known_ones(umov, scene, tmp_path):
     """Light by material is summed in another way than the engine's: with next to no freedom both must say the same."""
     assert umov("run", scene(TRUTHS[0], "rays", "truth", step=40), "-q").code == 0
@@ -283,6 +285,7 @@ def test_bad_observations_have_their_place(umov, scene, tmp_path, text, code, me
     assert message in done.err, done.err
 
 
+@pytest.mark.slow
 def test_errors_of_0_have_an_end(umov, scene, tmp_path):
     """q and u without errors at --floor 0: an answer, and materials that polarization alone does not tell apart."""
     rows = "".join(f"2018-01-21T05:{m}:00Z,nm:550,0.1,0.05\n" for m in range(10, 15))
@@ -368,13 +371,13 @@ def constant(path, snr, seed, bands=("nm:425", "nm:550", "nm:650")):
     path.write_text("time_utc,band,flux,flux_err\n" + "\n".join(rows) + "\n")
 
 
-def test_constant_light_is_never_a_sure_attitude(umov, scene, tmp_path):
-    for seed, (snr, known) in enumerate([(3, KNOWN), (20, [])]):
-        constant(tmp_path / "obs.csv", snr, seed)
-        done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json", *known)
-        assert done.code in (0, 4), done.err
-        verdict = json.loads(done.out)
-        assert verdict["verdict"] in ("undetermined", "no_fit", "ambiguous")
+@pytest.mark.parametrize("seed, snr, known", [(0, 3, KNOWN), pytest.param(1, 20, [], marks=pytest.mark.slow)])
+def test_constant_light_is_never_a_sure_attitude(umov, scene, tmp_path, seed, snr, known):
+    constant(tmp_path / "obs.csv", snr, seed)
+    done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json", *known)
+    assert done.code in (0, 4), done.err
+    verdict = json.loads(done.out)
+    assert verdict["verdict"] in ("undetermined", "no_fit", "ambiguous")
 
 
 def test_a_band_without_numbers_changes_nothing(umov, scene, tmp_path):
@@ -386,7 +389,7 @@ def test_a_band_without_numbers_changes_nothing(umov, scene, tmp_path):
     answers = []
     for rows in (kept, empty):
         (tmp_path / "some.csv").write_text("\n".join(rows) + "\n")
-        done = umov("invert", "pose", "some.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json")
+        done = umov("invert", "pose", "some.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json", *KNOWN)
         assert done.code == 0, done.err
         answers.append(json.loads(done.out))
     assert answers[0]["modes"] == answers[1]["modes"]

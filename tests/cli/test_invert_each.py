@@ -53,6 +53,7 @@ def data(path):
     return [line for line in path.read_text().splitlines() if not line.startswith("#")]
 
 
+@pytest.mark.slow
 def test_each_curve_has_the_answer_that_it_has_alone(umov, short_curves, tmp_path):
     done = umov(*asked(short_curves), "--each", "-o", "each")
     assert done.code == 3, done.err  # one has no answer
@@ -89,7 +90,7 @@ def plain(umov, curves, tmp_path, answered):
     return answered["done"]
 
 
-@pytest.mark.parametrize("per_shard", [pytest.param(1, marks=pytest.mark.long), 3])
+@pytest.mark.parametrize("per_shard", [pytest.param(1, marks=pytest.mark.long), pytest.param(3, marks=pytest.mark.slow)])
 def test_curves_in_parts_are_the_plain_ones(umov, curves, plain, tmp_path, per_shard):
     command = [*asked(curves), "--each"]
     assert plain.code == 3
@@ -101,6 +102,7 @@ def test_curves_in_parts_are_the_plain_ones(umov, curves, plain, tmp_path, per_s
         assert (tmp_path / f"{name}.ecsv").read_bytes() == (tmp_path / f"plain/{name}.ecsv").read_bytes(), name
 
 
+@pytest.mark.slow
 def test_a_task_of_an_array_tells_of_its_shards_alone(umov, curves, tmp_path):
     """Whoever has them all tells of the curves: what waits for all tasks to end well shall not wait in vain."""
     command = [*asked(curves), "--each"]
@@ -185,6 +187,7 @@ def test_objects_are_made_ready_once(umov, short_curves, library, tmp_path):
     assert sum(by == "model") == 3  # its own light was asked by every curve
 
 
+@pytest.mark.slow
 def test_another_orbit_is_another_job(umov, short_curves, library, tmp_path):
     command = ["identify", *short_curves, "--each", "--library", "lib", "--scenario", "place.toml"]
     orbit, place = tmp_path / "hst.tle", tmp_path / "place.toml"

@@ -9,6 +9,8 @@ import pytest
 from browser import Browser
 from conftest import ROOT, UMOV
 
+pytestmark = pytest.mark.slow  # a minute of jobs, then a browser
+
 DAY = ("--start", "2018-01-21T04:00:00Z", "--stop", "2018-01-22T08:00:00Z")
 
 

@@ -40,7 +40,7 @@ def test_a_train_of_one_mirror_is_a_nasmyth_port(umov, tmp_path, side):
 @pytest.mark.parametrize("port, instrument, observation", [
     ('{ mirrors = ["right", "back", "down", "east"] }', "c11_imx250", "exposure_s = 0.05"),
     ('{ mirrors = ["left", { to = "down", mirror = "Ag_Johnson" }, "south"], x_from = "down" }', "c11_imx250", "exposure_s = 0.05"),
-    ('{ mirrors = ["right", "down"], x_from = "north" }', "moptop_2m", "exposure_s = 0.02")])
+    pytest.param('{ mirrors = ["right", "down"], x_from = "north" }', "moptop_2m", "exposure_s = 0.02", marks=pytest.mark.slow)])
 def test_what_went_through_a_train_is_found_again(umov, tmp_path, port, instrument, observation):
     make_sphere(umov, 1)
     out = observe(umov, tmp_path, "out", observation, f"port = {port}", instrument=instrument, frame="equatorial",

@@ -213,6 +213,7 @@ def test_ten_interrupts_and_the_printed_command_give_the_plain_bytes(umov, scena
     assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_worker_that_hangs_is_ended(umov, scenario, tmp_path):
     """Once: another one does its shard. Each time: it is told after two, and the rest is done."""
     command = slow_signature_of(umov, scenario, 2000)

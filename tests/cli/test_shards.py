@@ -43,7 +43,7 @@ def test_ranges_of_a_signature(umov, scenario, tmp_path):
     assert rows(tmp_path / "part.csv") == rows(tmp_path / "whole.csv")[37 * 3:57 * 3]
 
 
-@pytest.mark.parametrize("shards", [2, 5])
+@pytest.mark.parametrize("shards", [2, pytest.param(5, marks=pytest.mark.slow)])
 def test_shards_of_passes_are_its_rows(umov, tmp_path, shards):
     """Objects are shared out; the whole has their passes by the time of rise."""
     orbits = (ROOT / "tests/data/tle/mixed_979_2018-01-20.tle").read_text().splitlines()[:45]

@@ -344,6 +344,7 @@ def test_a_start_that_does_not_say_its_body_is_taken_with_a_warning(made):
     assert data(made / "unsaid/track.ecsv") == data(made / "answer/track.ecsv")
 
 
+@pytest.mark.slow
 def test_a_start_that_allows_much_is_followed_by_its_samples(made):
     """Ten epochs leave 1 % of all attitudes, of which modes say little: the whole posterior goes on. The answer is not called sure."""
     head, epochs = epochs_of(made / "obs.csv")
