@@ -14,7 +14,6 @@ import statistics
 import tempfile
 
 import blind
-import case_r
 import chamfered_box
 import coverage
 import known_attitude
@@ -50,21 +49,23 @@ def total(rows):
 
 
 class Count:
-    def __init__(self):
-        self.passes, self.seen, self.two_sided, self.changes, self.least, self.sigmas = 0, 0, 0, [], [], []
+    """`true`: the change that there is."""
 
-    def add(self, row):
+    def __init__(self, true):
+        self.true, self.passes, self.seen, self.two_sided, self.changes, self.least, self.pulls, self.places = true, 0, 0, 0, [], [], [], set()
+
+    def add(self, row, place):
         self.passes += 1
         self.seen += row["sigma"] > 3
         self.two_sided += abs(row["sigma"]) > 3
         self.changes.append(STEP * row["change"])
         self.least.append(STEP * row["detectable"])
-        self.sigmas.append(row["sigma"])
+        self.pulls.append((row["change"] - self.true / STEP) / row["change_err"])
+        self.places |= {place} if row["sigma"] > 3 else set()
 
     def words(self):
-        low, high = coverage.interval(self.passes, self.seen)
-        return (f"{self.seen} of {self.passes} over 3 sigma ({low:.4f} to {high:.4f}; {self.two_sided} to either side); change {100 * statistics.mean(self.changes):.2f} % in the mean, "
-                f"pulls {statistics.mean(self.sigmas):.2f} +- {statistics.pstdev(self.sigmas):.2f}, smallest detectable {100 * statistics.median(self.least):.2f} % in the median")
+        return (f"{self.seen} of {self.passes} over 3 sigma, in {len(self.places)} attitudes ({self.two_sided} to either side); change {100 * statistics.mean(self.changes):.2f} % in the mean, "
+                f"pulls {statistics.mean(self.pulls):.2f} +- {statistics.pstdev(self.pulls):.2f}, smallest detectable {100 * statistics.median(self.least):.2f} % in the median")
 
 
 def main():
@@ -88,7 +89,8 @@ def main():
     fresh.pop("pz")
     rng = random.Random(o.seed)
     typical = statistics.median(r["intensity"] for _ in range(20) for r in box.light(blind.random_attitude(rng)) if r["band"] == "nm:550")
-    unchanged, changed, flagged, asked = {name: Count() for name in DRIFTS}, {name: Count() for name in DRIFTS}, 0, 0
+    unchanged, beside, changed = ({name: Count(DRIFTS[name][1] if is_changed else 0) for name in DRIFTS} for is_changed in (False, False, True))
+    flagged = asked = 0
     for place in range(o.attitudes):
         while True:
             truth = blind.random_attitude(rng)
@@ -106,16 +108,15 @@ def main():
             answer = box.asked("health", work / "obs.csv", "--scenario", box.scenario("fit", off, "rays"), *(w for n in seen for w in ("--drift", f"{DRIFTS[n][0]}={n}_asked")))
             for row in answer["health"]:
                 one = next(n for n in seen if row["parameter"].startswith(DRIFTS[n][0] + "="))
-                if name is None:
-                    unchanged[one].add(row)
-                elif name == one:
-                    changed[one].add(row)
+                (unchanged if name is None else changed if name == one else beside)[one].add(row, place)
             flagged += answer["u_null_test"]["flagged"] if name is None else 0
             asked += name is None
         print(f"attitude {place}: {', '.join(seen)}; " + "; ".join(f"{n} alarms {unchanged[n].seen}, seen {changed[n].seen} of {changed[n].passes}" for n in DRIFTS) + f"; flagged {flagged} of {asked}", flush=True)
     for name, (_, part) in DRIFTS.items():
         if changed[name].passes:
             print(f"{name} changed by {100 * part:g} %: {changed[name].words()}\n{name} unchanged: {unchanged[name].words()}")
+        if beside[name].passes:
+            print(f"{name} unchanged while the other has changed: {beside[name].words()}")
     low, high = coverage.interval(asked, flagged)
     print(f"polarization of the instrument of {100 * o.instrument:g} %, S/N {o.snr:g}, {len(light) // 3} epochs: flagged {flagged} of {asked} passes ({low:.4f} to {high:.4f})")
 

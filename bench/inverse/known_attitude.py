@@ -30,7 +30,7 @@ def turned_by(q, degrees):
 
 
 class Box:
-    """`materials`: of each group of the mesh; `more`: materials in TOML besides those of the box."""
+    """The box with some of its groups as one (`same`: old and new name). `materials`: of each group of the mesh; `more`: materials in TOML besides those of the box."""
 
     def __init__(self, o, work, materials, more, epochs, same=()):
         self.o, self.work, self.materials, self.more = o, work, materials, more
@@ -59,7 +59,7 @@ class Box:
         return [{k: row[k] if k in ("time_utc", "band") else float(row[k] or 0) for k in ("time_utc", "band", "I", "intensity", "q", "u")} for row in rows]
 
     def asked(self, *words):
-        return json.loads(blind.run(self.o.umov, "invert", *words, "-o", self.work / "answer", "--force", "--json", *self.o.rest, ok=(0, 4)))
+        return json.loads(blind.run(self.o.umov, "invert", *words, "--json", *self.o.rest, ok=(0, 4)))
 
 
 def write_observed(rows, typical, snr, rng, path, gain=None, instrument=(0, 0)):
@@ -71,7 +71,7 @@ def write_observed(rows, typical, snr, rng, path, gain=None, instrument=(0, 0)):
         scale = 3.1 * r["I"] / true if true > 0 else unit
         sd = math.sqrt(0.8 * true * typical + 0.2 * typical**2) / snr
         cells = [r["time_utc"], r["band"], f"{scale * ((gain or {}).get(r['band'], 1) * true + sd * rng.gauss(0, 1)):.6e}", f"{scale * sd:.6e}", "", "", "", ""]
-        if true > 3 * sd:
+        if true > 5 * sd:
             e = math.sqrt(2) * sd / true
             cells[4:] = [f"{r[k] + p + e * rng.gauss(0, 1):.6f}" for k, p in zip("qu", instrument)] + [f"{e:.6f}"] * 2
         out.append(",".join(cells))

@@ -5,7 +5,7 @@ case_r.py in one third of its phases, data by rays. Conditions of pairs are nump
 usage: mixtures.py TRIALS [--snr 100] [--seed 1] [--of 3] [--third 1] [--epochs 40] [--candidates gold,aluminium,cell,paint,silicon,foil] [--twins] [--umov PATH] [--work DIR] [options of umov invert material]
 --of: materials in the truth, of random parts (flat on the simplex). --twins: beside each candidate one that is it but for .1 % of its roughness and, of paint, of its reflectance: alike.
 Errors are of parts of the light at 550 nm over the pass, then of parts of the area, of which a material without a glint in the pass tells little: total variation, half the sum of the errors of the parts; F1 of
-materials of 5 % and more; root mean square over materials; of areas the root mean square of errors over what the answer says they are. What is told as one counts as one."""
+materials of 5 % and more; root mean square over materials; of areas that are there the root mean square of errors over what the answer says they are. What is told as one counts as one."""
 import argparse
 import itertools
 import math
@@ -18,7 +18,6 @@ import tempfile
 import numpy
 
 import blind
-import case_r
 import chamfered_box
 import known_attitude
 
@@ -45,9 +44,9 @@ def condition(one, other, snr, typical):
 
 
 def by_light(told, parts, light):
-    """Parts of the area, told and true, as parts of the light at 550 nm. Of what is told as one the first stands for all."""
+    """Parts of the area, told and true, as parts of the light at 550 nm. What is told as one stands as the mean of its members."""
     given = {name: sum(r["intensity"] for r in rows if r["band"] == "nm:550") for name, rows in light.items()}
-    found = [part * given[one[0]] for one, part in told]
+    found = [part * statistics.mean(given[n] for n in one) for one, part in told]
     there = [sum(parts.get(n, 0) * given[n] for n in one) for one, _ in told]
     return [x / max(sum(found), 1e-300) for x in found], [x / max(sum(there), 1e-300) for x in there]
 
@@ -109,7 +108,7 @@ def main():
         told = [(m["materials"], m["fraction"] or 0) for m in answer["materials"]]
         area = [part for _, part in told], [sum(parts.get(n, 0) for n in one) for one, _ in told]
         of_light, of_area = judged(*by_light(told, parts, light)), judged(*area)
-        pulls += [(a - b) / m["fraction_err"] for a, b, m in zip(*area, answer["materials"]) if m["fraction_err"] and a > 0]
+        pulls += [(a - b) / m["fraction_err"] for a, b, m in zip(*area, answer["materials"]) if m["fraction_err"] and b > 0]
         errors.append((of_light, of_area, len(told)))
         for a, b in itertools.combinations(known, 2):
             if condition(light[a], light[b], o.snr, typical) > ALIKE:

@@ -69,7 +69,7 @@ def test_what_cannot_be_known_is_refused(tmp_path):
 
 
 def test_an_inversion_takes_it():
-    """The same light as umov's own table: the same answer."""
+    """Light of a part that is painted white, of a table of lightkurve's kind: it is told from black."""
     scene = EXAMPLES / "agena_maui.toml"
     asked = {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "bands.set": ["nm:550"]}
     curve = umov.run(scene, set={**asked, "time.step_s": 20})

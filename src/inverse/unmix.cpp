@@ -70,19 +70,36 @@ VectorXd nnls(const MatrixXd &a, const VectorXd &b) {
   return x.cwiseMax(0);
 }
 
-/// Which end members the data hold apart: the number of each one's group.
-std::vector<std::size_t> groups_of(const Whitened &w, double scale) {
+constexpr double sigmas = 3; // from which on something is seen
+
+/// End members that as much of as explains the data, were it of the brightest, gives light that is
+/// seen; all of them if none is.
+std::vector<bool> seen(const Whitened &w) {
+  const VectorXd length = w.columns.colwise().norm();
+  std::vector<bool> out;
+  for (const double one : length)
+    out.push_back(one * w.right.norm() >= sigmas * length.maxCoeff() && one > 0);
+  if (std::ranges::find(out, true) == out.end())
+    out.assign(out.size(), true);
+  return out;
+}
+
+/// Which of those that are seen the data hold apart: the number of each one's group.
+std::vector<std::size_t> groups_of(const Whitened &w, double scale, const std::vector<bool> &seen) {
   const auto n = static_cast<std::size_t>(w.columns.cols());
   std::vector<std::size_t> group(n);
   std::iota(group.begin(), group.end(), std::size_t{0});
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = a + 1; b < n; ++b) {
+      if (!seen[a] || !seen[b])
+        continue;
       const VectorXd x = w.columns.col(static_cast<Index>(a)),
                      y = w.columns.col(static_cast<Index>(b));
       const double c = std::abs(x.dot(y)) / std::max(x.norm() * y.norm(), 1e-300);
       const double condition = std::sqrt((1 + c) / std::max(1 - c, 1e-300));
-      const double apart = scale * x.norm() * std::sqrt(std::max(0.0, 1 - c * c));
-      constexpr double worst = 200, sigmas = 3;
+      const double apart =
+          scale * std::min(x.norm(), y.norm()) * std::sqrt(std::max(0.0, 1 - c * c));
+      constexpr double worst = 200;
       if (condition > worst || apart < sigmas)
         std::ranges::replace(group, group[b], group[a]);
     }
@@ -122,22 +139,26 @@ std::vector<EndMember> joined(const std::vector<EndMember> &members,
   return out;
 }
 
-/// How far off the part of joined members is, relative, as nobody knows which of them gives the
-/// light: as much of it as their mean is more of a dim one and less of a bright one.
-double spread_of(const std::vector<std::size_t> &group, std::size_t leader,
-                 const MatrixXd &columns) {
-  constexpr double most = 10; // times: of one without light any part may be there
-  std::vector<double> length;
-  for (std::size_t k = 0; k < group.size(); ++k)
-    if (group[k] == leader)
-      length.push_back(columns.col(static_cast<Index>(k)).norm());
-  const auto count = static_cast<double>(length.size());
-  const double mean = std::reduce(length.begin(), length.end()) / count;
-  double square = 0;
-  for (const double one : length)
-    if (mean > 0)
-      square += std::pow(std::min(mean / std::max(one, mean / most), most) - 1, 2) / count;
-  return std::sqrt(square);
+/// What the parts are uncertain by as nobody knows which of joined members gives the light: of a
+/// dim one there is more than of their mean, of a bright one less, and all others change with it.
+MatrixXd of_joined(const std::vector<std::size_t> &group, const std::vector<std::size_t> &first,
+                   const MatrixXd &columns, const VectorXd &x) {
+  MatrixXd out = MatrixXd::Zero(x.size(), x.size());
+  for (Index g = 0; g < x.size(); ++g) {
+    std::vector<double> length;
+    for (std::size_t k = 0; k < group.size(); ++k)
+      if (group[k] == first[static_cast<std::size_t>(g)])
+        length.push_back(columns.col(static_cast<Index>(k)).norm());
+    const auto count = static_cast<double>(length.size());
+    const double mean = std::reduce(length.begin(), length.end()) / count;
+    for (const double one : length) {
+      VectorXd other = x;
+      other[g] *= one > 0 ? mean / one : 1;
+      const VectorXd off = other / other.sum() - x / x.sum();
+      out += algebra::product(MatrixXd(off), MatrixXd(off.transpose())) / count;
+    }
+  }
+  return out;
 }
 
 /// NaN where a column is 0: it has no direction.
@@ -172,13 +193,18 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   out.condition = condition_of(w.columns);
   out.scale = all.sum();
   out.chi2 = (w.right - w.columns * all).squaredNorm();
-  const auto group = groups_of(w, out.scale);
-  std::vector<std::size_t> first;
-  for (std::size_t k = 0; k < group.size(); ++k)
-    if (group[k] == k)
-      first.push_back(k);
-  for (const std::size_t leader : first) {
-    out.groups.emplace_back();
+  const std::vector<bool> is_seen = seen(w);
+  const auto group = groups_of(w, out.scale, is_seen);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::size_t> first, place; // of the groups that are seen: leaders, place among all
+  for (std::size_t leader = 0; leader < group.size(); ++leader) {
+    if (group[leader] != leader)
+      continue;
+    if (is_seen[leader]) {
+      first.push_back(leader);
+      place.push_back(out.groups.size());
+    }
+    out.groups.push_back({{}, unknown, unknown, unknown});
     for (std::size_t k = 0; k < group.size(); ++k)
       if (group[k] == leader)
         out.groups.back().names.push_back(members[k].name);
@@ -191,24 +217,18 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
     slope.row(g).setConstant(-x[g] / (sum * sum));
     slope(g, g) += 1 / sum;
   }
-  MatrixXd with_spread = covariance;
-  for (Index g = 0; g < x.size(); ++g)
-    with_spread(g, g) +=
-        std::pow(x[g] * spread_of(group, first[static_cast<std::size_t>(g)], w.columns), 2);
-  const auto of_parts = [&](const MatrixXd &parts) -> MatrixXd {
-    return algebra::product(algebra::product(slope, parts), slope.transpose());
-  };
-  const MatrixXd of_changes = of_parts(covariance), of_fractions = of_parts(with_spread);
+  const MatrixXd of_changes =
+      algebra::product(algebra::product(slope, covariance), slope.transpose());
   const bool has_light = x.sum() > 0;
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  for (Index g = 0; g < x.size(); ++g) {
-    UnmixedGroup &one = out.groups[static_cast<std::size_t>(g)];
-    // Without light nothing is known; of one group all is of it, and no change of that can show.
-    one.fraction = has_light ? x[g] / sum : unknown;
+  const MatrixXd of_fractions =
+      has_light ? MatrixXd(of_changes + of_joined(group, first, w.columns, x)) : of_changes;
+  for (Index g = 0; g < x.size() && has_light; ++g) {
+    UnmixedGroup &one = out.groups[place[static_cast<std::size_t>(g)]];
+    one.fraction = x[g] / sum;
+    // Of one group all is of it, and no change of that can show.
     one.fraction_err = x.size() < 2 ? 0 : std::sqrt(std::max(0.0, of_fractions(g, g)));
-    one.fraction_err = has_light ? one.fraction_err : unknown;
-    one.detectable =
-        has_light && x.size() > 1 ? 3 * std::sqrt(std::max(0.0, of_changes(g, g))) : unknown;
+    if (x.size() > 1)
+      one.detectable = sigmas * std::sqrt(std::max(0.0, of_changes(g, g)));
     for (Index h = 0; h < x.size(); ++h)
       out.covariance.push_back(of_fractions(g, h));
   }

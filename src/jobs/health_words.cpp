@@ -170,8 +170,8 @@ Verdict verdict_of(const Health &health, const Health *baseline) {
 }
 
 std::vector<std::string> notes_of(const Health &health, const Health *baseline, Verdict verdict,
-                                  const NullTest &u, const ObservedCurve &curve,
-                                  const CurveErrors &errors) {
+                                  const NullTest &u, const NullTest &u_before,
+                                  const ObservedCurve &curve, const CurveErrors &errors) {
   std::vector<std::string> out = limits_of(curve, errors, Asked::Part);
   std::size_t changed = 0;
   for (const HealthRow &row : health.rows) {
@@ -203,6 +203,8 @@ std::vector<std::string> notes_of(const Health &health, const Health *baseline, 
                      "the attitude right, and the object?");
   if (auto words = words_of(u))
     out.push_back(std::move(*words));
+  if (const auto words = words_of(u_before))
+    out.push_back("the baseline: " + *words);
   if (errors.has_clouds)
     out.emplace_back("--clouds is not looked at here: the sky is taken for clear");
   return out;

@@ -28,9 +28,10 @@ std::string json_of(const Health &health, const NullTest &u, Verdict verdict,
 /// One change explains the data; several do, or one that cannot be; none was needed, or could be
 /// seen; nothing does. `baseline`: what it showed by itself, if there is one.
 Verdict verdict_of(const Health &health, const Health *baseline);
-/// What the answer rests on, and what it cannot tell. `u`: of the best fit.
+/// What the answer rests on, and what it cannot tell. `u`, `u_before`: of the best fit, and of that
+/// of the baseline.
 std::vector<std::string> notes_of(const Health &health, const Health *baseline, Verdict verdict,
-                                  const NullTest &u, const ObservedCurve &curve,
-                                  const CurveErrors &errors);
+                                  const NullTest &u, const NullTest &u_before,
+                                  const ObservedCurve &curve, const CurveErrors &errors);
 
 } // namespace umov::jobs

@@ -158,7 +158,10 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
   const Health *const shown = before ? &*before : nullptr;
   out.verdict = verdict_of(health, shown);
   const NullTest u = null_test_of(observed.curve, health.fitted.i, health.fitted.u);
-  const auto notes = notes_of(health, shown, out.verdict, u, observed.curve, request.errors);
+  const NullTest u_before =
+      old ? null_test_of(old->observed.curve, before->fitted.i, before->fitted.u) : NullTest{};
+  const auto notes =
+      notes_of(health, shown, out.verdict, u, u_before, observed.curve, request.errors);
   out.summary =
       fmt::format("{}: chi-square {:.4g} of {} without any change\n", name_of(out.verdict),
                   health.chi2, counted(health.measurements, "measurement"));

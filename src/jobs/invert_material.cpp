@@ -146,6 +146,11 @@ std::vector<std::string> notes_of(const std::vector<Row> &rows, const Unmixing &
   if (has_clouds)
     out.emplace_back("--clouds: the probabilities allow for them, the fractions take the sky for "
                      "clear");
+  for (const Row &row : rows)
+    if (unmixed.scale > 0 && std::isnan(row.unmixed.fraction))
+      out.push_back(fmt::format("{} gives next to no light here beside the others: how much of it "
+                                "there is is not known, and their parts are of what is left",
+                                row.names));
   if (is_dark(members))
     out.emplace_back(
         "in the scenario's attitude the object gives no light at these times, whatever "
@@ -181,7 +186,7 @@ Table parts_table(const std::vector<DataPart> &parts, const CurveErrors &errors,
       detectable.push_back(group.detectable);
       const bool has_first =
           std::ranges::find(group.names, members.front().name) != group.names.end();
-      if (has_first && group.names.size() < members.size())
+      if (has_first && group.names.size() < members.size() && !std::isnan(group.fraction))
         of_first.push_back({part.name(), group.fraction, group.fraction_err});
     }
   }
@@ -204,6 +209,8 @@ std::string material_page_of(const std::string &title, const Table &fit, const U
   add_data_figures(figures, fit);
   FittedNumbers numbers;
   for (const UnmixedGroup &group : unmixed.groups) {
+    if (std::isnan(group.fraction))
+      continue;
     numbers.name.push_back(fmt::format("part of {}", fmt::join(group.names, "|")));
     numbers.value.push_back(group.fraction);
   }
@@ -214,6 +221,18 @@ std::string material_page_of(const std::string &title, const Table &fit, const U
                                    "part of " + first, parts));
   const auto page = make_answer_page(title, figures, page_lines(summary));
   return page ? *page : std::string();
+}
+
+/// Light of the object with the group of each candidate.
+Result<std::vector<EndMember>> light_of(GroupLight &light, const std::vector<GroupMaterial> &all,
+                                        const Monitor &monitor) {
+  std::vector<EndMember> out;
+  for (const GroupMaterial &candidate : all) {
+    monitor.advance("candidates", out.size(), all.size());
+    UMOV_ASSIGN(member, light.of(candidate, monitor));
+    out.push_back(std::move(member));
+  }
+  return out;
 }
 
 /// Each once.
@@ -247,12 +266,7 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   for (const std::string &name : material.candidates)
     all.push_back({material.group, name});
   GroupLight light(scenario, request, observed, options, all);
-  std::vector<EndMember> members;
-  for (const GroupMaterial &candidate : all) {
-    monitor.advance("candidates", members.size(), material.candidates.size());
-    UMOV_ASSIGN(member, light.of(candidate, monitor));
-    members.push_back(std::move(member));
-  }
+  UMOV_ASSIGN(members, light_of(light, all, monitor));
   tell_of_device(light.used().device, diagnostics);
   double chi2 = 0;
   const auto probability = probabilities(observed.curve, request.errors, members, chi2);

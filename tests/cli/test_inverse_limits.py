@@ -111,6 +111,13 @@ def wild(lines, seed):
     return "\n".join(out) + "\n"
 
 
+@pytest.mark.slow
+def test_data_that_no_such_object_makes_are_none_of_any_materials(umov, scene, ask, tmp_path):
+    """Materials are not quite known, by default: what they may be explains no such data either."""
+    (tmp_path / "wild.csv").write_text(wild(good(umov, scene, tmp_path), 3))
+    assert ask("pose", "wild.csv")["verdict"] == "no_fit"
+
+
 def test_data_that_no_such_object_makes(umov, scene, ask, tmp_path):
     (tmp_path / "wild.csv").write_text(wild(good(umov, scene, tmp_path), 3))
     for question in QUESTIONS:
@@ -203,4 +210,7 @@ def test_polarization_of_the_instrument_is_told(umov, scene, ask, tmp_path, ques
     assert not clean["u_null_test"]["flagged"] and not any("polarization of the instrument" in note for note in clean["notes"])
     u = told["u_null_test"]
     assert u["flagged"] and any("polarization of the instrument" in note for note in told["notes"])
+    if question == "health":
+        based = ask(question, "good.csv", "--baseline", "polarized.csv")
+        assert not based["u_null_test"]["flagged"] and any(note.startswith("the baseline: U of") for note in based["notes"])
     assert abs(u["q0"] - 0.03) < 4 * u["q0_sd"] and abs(u["u0"]) < 4 * u["u0_sd"]

@@ -380,7 +380,8 @@ def test_constant_light_is_never_a_sure_attitude(umov, scene, tmp_path, seed, sn
     assert verdict["verdict"] in ("undetermined", "no_fit", "ambiguous")
 
 
-def test_a_band_without_numbers_changes_nothing(umov, scene, tmp_path):
+@pytest.mark.parametrize("known", [KNOWN, pytest.param([], marks=pytest.mark.slow)])
+def test_a_band_without_numbers_changes_nothing(umov, scene, tmp_path, known):
     assert umov("run", scene(TRUTHS[0], "rays", "truth", step=40), "-q").code == 0
     observe(tmp_path, "obs.csv", 50, 1)
     lines = (tmp_path / "obs.csv").read_text().splitlines()
@@ -389,7 +390,7 @@ def test_a_band_without_numbers_changes_nothing(umov, scene, tmp_path):
     answers = []
     for rows in (kept, empty):
         (tmp_path / "some.csv").write_text("\n".join(rows) + "\n")
-        done = umov("invert", "pose", "some.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json", *KNOWN)
+        done = umov("invert", "pose", "some.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json", *known)
         assert done.code == 0, done.err
         answers.append(json.loads(done.out))
     assert answers[0]["modes"] == answers[1]["modes"]

@@ -32,7 +32,7 @@ struct Unmixing {
   std::size_t measurements = 0;
   std::size_t left_out = 0; ///< samples whose q and u stand without an I above 0: they say nothing
   EndMember fitted;         ///< light of the mixture, in the model's units
-  std::vector<double> covariance; ///< of the fractions of the groups [row * n + column]
+  std::vector<double> covariance; ///< of the fractions that are known [row * n + column]
   double condition = 1; ///< of the end members, whitened and of unit length, before any was joined;
                         ///< NaN: one gives no light
 };
@@ -40,7 +40,8 @@ struct Unmixing {
 /// Least squares with fractions of 0 or more (Lawson & Hanson 1974, chapter 23). I and, where q and
 /// u were measured, Q - q I and U - u I, which are linear in the fractions and free of the error of
 /// I. The sky is taken for clear. End members are joined where a pair's condition is above 200 or
-/// where three standard deviations do not part them, whatever the scale.
+/// where three standard deviations do not part them, whatever the scale. Of one that gives no light
+/// beside the brightest nothing is known: its fraction is NaN, and the others' are of what is left.
 Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
                const std::vector<EndMember> &members);
 

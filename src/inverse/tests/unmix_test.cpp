@@ -111,9 +111,9 @@ TEST(Unmix, FractionsComeBackWithinTheirErrors) {
 }
 
 TEST(Unmix, WhichOfTwoThatAreAlikeGivesTheLightIsPartOfTheError) {
-  // 30 % of metal, 70 % of paint; another candidate is the same paint thrice as bright. As much
-  // light as of their mean (2) is 2 times as much area of the dim and 2/3 of the bright: the part
-  // of metal comes out as .3/(.3 + .35), and its error is .3/.65^2 times .35 sqrt((1 + 1/9)/2).
+  // 30 % of metal, 70 % of paint; another candidate is the same paint thrice as bright. Of their
+  // mean (2) there is .35, so that metal is told as .3/.65 = .4615; if the light is of the dim one
+  // it is .3/1 = .3, of the bright one .3/(.3 + .7/3) = .5625: .135 off in the root mean square.
   CurveErrors errors;
   errors.floor = errors.floor_median = 0;
   errors.zero_point_sd = 1e-6;
@@ -126,8 +126,37 @@ TEST(Unmix, WhichOfTwoThatAreAlikeGivesTheLightIsPartOfTheError) {
   ASSERT_EQ(found.groups.size(), 2u);
   const UnmixedGroup &metal = found.groups[0];
   EXPECT_NEAR(metal.fraction, 0.4615, 0.01); // noise: 80 numbers of 2 %
-  EXPECT_NEAR(metal.fraction_err, 0.185, 0.01);
+  EXPECT_NEAR(metal.fraction_err, 0.135, 0.005);
+  EXPECT_NEAR(found.groups[1].fraction_err, metal.fraction_err, 1e-9);
   EXPECT_LT(metal.detectable, 0.03); // a change is seen all the same
+}
+
+TEST(Unmix, OfADarkCandidateNothingIsKnownAndTheOthersAreToldAsWithoutIt) {
+  CurveErrors errors;
+  errors.floor = errors.floor_median = 0;
+  const Case c = mixture(0.3, 0.7, 6);
+  const std::vector<EndMember> lit{c.members[0], c.members[1]};
+  const Unmixing without = unmix(c.curve, errors, lit);
+  EndMember dark = c.members[0];
+  dark.name = "dark";
+  for (std::vector<double> *light : {&dark.i, &dark.q, &dark.u})
+    for (double &one : *light)
+      one *= 1e-6;
+  for (const std::size_t place : {0u, 1u, 2u}) {
+    std::vector<EndMember> members = lit;
+    members.insert(members.begin() + static_cast<std::ptrdiff_t>(place), dark);
+    const Unmixing found = unmix(c.curve, errors, members);
+    ASSERT_EQ(found.groups.size(), 3u) << place;
+    EXPECT_EQ(found.covariance.size(), 4u);
+    for (std::size_t g = 0, known = 0; g < 3; ++g) {
+      if (g == place) {
+        EXPECT_TRUE(std::isnan(found.groups[g].fraction) && std::isnan(found.groups[g].detectable));
+        continue;
+      }
+      EXPECT_NEAR(found.groups[g].fraction, without.groups[known].fraction, 1e-9);
+      EXPECT_NEAR(found.groups[g].fraction_err, without.groups[known++].fraction_err, 1e-9);
+    }
+  }
 }
 
 TEST(Unmix, NeitherPolarizationNorZeroPointsPullTheScale) {
