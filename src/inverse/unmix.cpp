@@ -72,13 +72,12 @@ VectorXd nnls(const MatrixXd &a, const VectorXd &b) {
 
 constexpr double sigmas = 3; // from which on something is seen
 
-/// End members that as much of as explains the data, were it of the brightest, gives light that is
-/// seen; all of them if none is.
-std::vector<bool> seen(const Whitened &w) {
-  const VectorXd length = w.columns.colwise().norm();
+/// End members of which what is found gives light that is seen, or as much as of all the others
+/// would; all of them if none is.
+std::vector<bool> seen(const Whitened &w, const VectorXd &parts) {
   std::vector<bool> out;
-  for (const double one : length)
-    out.push_back(one * w.right.norm() >= sigmas * length.maxCoeff() && one > 0);
+  for (Index k = 0; k < parts.size(); ++k)
+    out.push_back(w.columns.col(k).norm() * std::max(parts[k], parts.sum() - parts[k]) >= sigmas);
   if (std::ranges::find(out, true) == out.end())
     out.assign(out.size(), true);
   return out;
@@ -97,8 +96,10 @@ std::vector<std::size_t> groups_of(const Whitened &w, double scale, const std::v
                      y = w.columns.col(static_cast<Index>(b));
       const double c = std::abs(x.dot(y)) / std::max(x.norm() * y.norm(), 1e-300);
       const double condition = std::sqrt((1 + c) / std::max(1 - c, 1e-300));
+      // What the brighter leaves if the other, of any scale, stands in its place. That the brighter
+      // can hide a dim one makes them no one: the dim one's error says it.
       const double apart =
-          scale * std::min(x.norm(), y.norm()) * std::sqrt(std::max(0.0, 1 - c * c));
+          scale * std::max(x.norm(), y.norm()) * std::sqrt(std::max(0.0, 1 - c * c));
       constexpr double worst = 200;
       if (condition > worst || apart < sigmas)
         std::ranges::replace(group, group[b], group[a]);
@@ -193,7 +194,7 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   out.condition = condition_of(w.columns);
   out.scale = all.sum();
   out.chi2 = (w.right - w.columns * all).squaredNorm();
-  const std::vector<bool> is_seen = seen(w);
+  const std::vector<bool> is_seen = seen(w, all);
   const auto group = groups_of(w, out.scale, is_seen);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::size_t> first, place; // of the groups that are seen: leaders, place among all

@@ -40,8 +40,9 @@ struct Unmixing {
 /// Least squares with fractions of 0 or more (Lawson & Hanson 1974, chapter 23). I and, where q and
 /// u were measured, Q - q I and U - u I, which are linear in the fractions and free of the error of
 /// I. The sky is taken for clear. End members are joined where a pair's condition is above 200 or
-/// where three standard deviations do not part them, whatever the scale. Of one that gives no light
-/// beside the brightest nothing is known: its fraction is NaN, and the others' are of what is left.
+/// where three standard deviations do not part them, whatever the scale. Of one that as much of
+/// as of all others would not be seen nothing is known: its fraction is NaN, and the others' are of
+/// what is left.
 Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
                const std::vector<EndMember> &members);
 
