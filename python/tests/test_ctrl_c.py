@@ -147,7 +147,7 @@ SET_UP = {
 }
 
 
-@pytest.mark.parametrize("name", SET_UP)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow) if name in ("light_curve", "passes") else name for name in SET_UP])
 def test_what_takes_long_to_make_ready_may_be_stopped(name, large):
     """At any time of it: a large mesh is read, cleaned, cut and joined for seconds before the first pose."""
     def processor_s():

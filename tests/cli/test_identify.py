@@ -59,7 +59,7 @@ def asked(umov, *words, code=(0,)):
     return json.loads(done.out)
 
 
-@pytest.mark.parametrize("name", [NAMES[0], *(pytest.param(name, marks=pytest.mark.long) for name in NAMES[1:])])
+@pytest.mark.parametrize("name", [pytest.param(NAMES[0], marks=pytest.mark.slow), *(pytest.param(name, marks=pytest.mark.long) for name in NAMES[1:])])
 def test_each_object_is_found_in_its_own_light(umov, scene, library, tmp_path, name):
     k = NAMES.index(name)
     truth_of(umov, scene, tmp_path, name, TRUTHS[k % 3], 100, k)

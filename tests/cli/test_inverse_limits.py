@@ -56,6 +56,7 @@ def test_constant_light_determines_nothing(ask, tmp_path, question):
     assert any("does not change by more than its errors" in note for note in found["notes"])
 
 
+@pytest.mark.slow
 def test_constant_light_tells_no_period(umov, scene, ask, tmp_path):
     """A periodogram has a highest peak always; 341 s with 100 % was once the answer here."""
     flat(tmp_path / "obs.csv", with_errors=True)
@@ -118,6 +119,7 @@ def test_data_that_no_such_object_makes_are_none_of_any_materials(umov, scene, a
     assert ask("pose", "wild.csv")["verdict"] == "no_fit"
 
 
+@pytest.mark.slow
 def test_data_that_no_such_object_makes(umov, scene, ask, tmp_path):
     (tmp_path / "wild.csv").write_text(wild(good(umov, scene, tmp_path), 3))
     for question in QUESTIONS:

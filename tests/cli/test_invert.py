@@ -211,6 +211,7 @@ def test_materials_that_are_nearly_known_give_the_answer_of_known_ones(umov, sce
     assert all(one["unit"] == "deg" and abs(one["value"]) < 1e-3 for one in tilts)
 
 
+@pytest.mark.slow
 def test_what_one_of_six_groups_lacks_is_found_of_it_alone(umov, scene, tmp_path):
     """Six sides of one paint, of which one reflects a third less: of the material there is one number for all."""
     white = re.sub(r'^(body_..) = .*', r'\1 = "paint_white"', CUBESAT, flags=re.M)

@@ -133,6 +133,7 @@ def test_tables_without_a_row_are_the_plain_ones(umov, scene, tmp_path, per_shar
         assert (tmp_path / f"modes.{suffix}").exists()
 
 
+@pytest.mark.slow
 def test_shards_of_curves_are_its_rows(umov, curves, plain, tmp_path):
     command = [*asked(curves), "--each"]
     rows = []

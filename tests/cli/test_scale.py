@@ -492,6 +492,7 @@ def test_a_cluster_is_told_all_that_it_was_given(umov, scenario, tmp_path, monke
         assert refused.code == 2 and more[0] in refused.err, refused.err
 
 
+@pytest.mark.slow
 def test_a_job_without_memory_for_any_shard_ends_soon(umov, scenario, tmp_path):
     """Three bands of a million bins are hundreds of megabytes: 20 shards, of which each would be tried three times."""
     assert umov("scale", "lock", "--per-shard", 20, "--reduce", "histogram:intensity:0:1:1000000", "job", *signature_of(scenario)).code == 0
