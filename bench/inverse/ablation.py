@@ -13,11 +13,9 @@ one leads / mean of its probability."""
 import argparse
 import json
 import math
-import pathlib
 import random
 import shutil
 import statistics
-import tempfile
 import time
 
 import blind
@@ -115,11 +113,9 @@ def main():
     parser.add_argument("--snr", default="10,100")
     parser.add_argument("--questions", default="pose,material,identity")
     parser.add_argument("--phases", default=",".join(PASSES))
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    blind.add_places(parser)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert and identify
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = blind.work_folder(o)
     bench, seen = Bench(o, work), {}
     print(f"| question | phase | S/N | {' | '.join(DATA)} | s |\n|---|---|---|---|---|---|---|", flush=True)
     for question in o.questions.split(","):

@@ -75,6 +75,19 @@ formats = ["csv"]
 """
 
 
+def add_places(parser):
+    """Options of all programs here: the umov that is asked, and where its files go."""
+    parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
+    parser.add_argument("--work", type=pathlib.Path)
+
+
+def work_folder(o):
+    """--work, or a new one."""
+    work = o.work or pathlib.Path(tempfile.mkdtemp())
+    work.mkdir(parents=True, exist_ok=True)
+    return work
+
+
 class NoResult(SystemExit):
     """umov's answer to what nothing can be seen of, as a span without a sunlit pass."""
 
@@ -99,6 +112,11 @@ def rows_of(path):
     return list(csv.DictReader(lines))
 
 
+def photon_sd(true, typical, snr):
+    """Noise of photons and of the sky: S/N is that of an I of `typical`."""
+    return math.sqrt((0.8 * true * typical + 0.2 * typical**2) / snr**2)
+
+
 def observed(rows, snr, rng, path):
     """A table as an observer has it: SNR is that of I at its median; Q and U have sqrt(2) of its error."""
     median = {}
@@ -109,7 +127,7 @@ def observed(rows, snr, rng, path):
         true, m = float(r["intensity"]), median[r["band"]]
         if not m > 0:
             continue
-        sd = math.sqrt((0.8 * true * m + 0.2 * m * m) / snr**2)
+        sd = photon_sd(true, m, snr)
         scale = 3.1 * float(r["I"]) / true if true > 0 else None
         if scale is None:
             continue
@@ -182,11 +200,9 @@ def main():
     parser.add_argument("--only", type=int, help="of the trials, this one alone (the others' curves are made, for the same noise)")
     parser.add_argument("--truth", choices=["rays", "mitsuba"], default="rays")
     parser.add_argument("--surfaces", type=int, default=1, help="that the light of the truth touches at most; of the fit: --set render.bounces=N")
-    parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    add_places(parser)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = work_folder(o)
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
     for mesh, words in zip(meshes, MESH[o.object]):
         if not mesh.exists():
@@ -316,6 +332,8 @@ def spin_axis(q, rate):
 def turned(q, rate_deg_s, seconds):
     """An attitude after a constant turn in body axes."""
     n = math.sqrt(sum(c * c for c in rate_deg_s))
+    if n == 0:
+        return q
     half = math.radians(n * seconds) / 2
     return product(q, [math.cos(half), *(math.sin(half) * c / n for c in rate_deg_s)])
 

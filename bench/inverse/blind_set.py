@@ -17,7 +17,6 @@ import pathlib
 import random
 import statistics
 import subprocess
-import tempfile
 import time
 
 import blind
@@ -169,12 +168,10 @@ def main():
     parser.add_argument("--snr", type=float, default=0)
     parser.add_argument("--counts", action="store_true")
     parser.add_argument("--only", help="this trial alone, or those from one to another: 8-19")
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    blind.add_places(parser)
     parser.add_argument("-o", "--output", type=pathlib.Path)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = blind.work_folder(o)
     chain, names, lines = Chain(o, work), o.objects.split(","), []
     for kind in o.kinds.split(","):
         done = right = covered = inside = 0

@@ -8,10 +8,8 @@ OBJECT: as blind.py has them. --dark 2: arcs with two dark epochs or more alone.
 import argparse
 import itertools
 import math
-import pathlib
 import random
 import statistics
-import tempfile
 import typing
 
 import blind
@@ -47,7 +45,7 @@ def observed(rows, snr, floor, rng, path, zero_point_sd=ZERO_POINT_SD, typical=N
         true, m, scale = float(r["intensity"]), mean[r["band"]], unit[r["band"]]
         if true > 0:
             scale = 3.1 * float(r["I"]) / true
-        sd = math.sqrt((0.8 * true * m + 0.2 * m * m) / snr**2)
+        sd = blind.photon_sd(true, m, snr)
         seen = gain[r["band"]] * (true * (1 + floor * rng.gauss(0, 1)) + of_median * median * rng.gauss(0, 1)) + sd * rng.gauss(0, 1)
         chi2 += (seen - gain[r["band"]] * true) ** 2 / (sd**2 + (floor * seen) ** 2 + (of_median * median) ** 2)
         cells = [r["time_utc"], r["band"], f"{scale * seen:.6e}", f"{scale * sd:.6e}", "", "", "", ""]
@@ -89,8 +87,7 @@ def parser_of(count, snr, floor):
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--floor", type=float, default=floor, help="error of the model, put in and told")
     parser.add_argument("--first", type=int, default=0, help="of the seed, the one to begin with")
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    blind.add_places(parser)
     return parser
 
 
@@ -103,8 +100,7 @@ def told(parser):
     """The options, with what blind.py's functions ask for, and the folder to work in; what is not known here goes on to umov invert."""
     o, o.given = parser.parse_known_args()
     o.rest, o.surfaces, o.wrong, o.truth = fit_options(o.floor, o.given), 1, getattr(o, "wrong", 0), None
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = blind.work_folder(o)
     return o, work
 
 

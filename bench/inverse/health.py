@@ -8,10 +8,8 @@ PASSES: without any change, in all; a tenth as many with each change. --instrume
 scenario's attitude is, about each axis [deg]; the fit is told that. --gain-sd: zero points of bands are off by that, and the fit is told."""
 import argparse
 import math
-import pathlib
 import random
 import statistics
-import tempfile
 
 import blind
 import chamfered_box
@@ -68,6 +66,37 @@ class Count:
                 f"pulls {statistics.mean(self.pulls):.2f} +- {statistics.pstdev(self.pulls):.2f}, smallest detectable {100 * statistics.median(self.least):.2f} % in the median")
 
 
+class Counts:
+    """Of a part that ages: passes in which it has, in which nothing has, and in which another part has."""
+
+    def __init__(self, part):
+        self.changed, self.unchanged, self.beside = Count(part), Count(0), Count(0)
+
+    def of(self, changed, name):
+        return self.unchanged if changed is None else self.changed if changed == name else self.beside
+
+
+def lit_attitude(box, rng):
+    """An attitude, its light, and the parts that give enough of it."""
+    while True:
+        truth = blind.random_attitude(rng)
+        light = box.light(truth)
+        seen = [name for name, (group, _) in DRIFTS.items() if total(box.light(truth, **{group: "dark"})) <= (1 - SEEN) * total(light)]
+        if total(light) > 0 and seen:
+            return truth, light, seen
+
+
+def asked_of(box, truth, light, typical, seen, rng):
+    """The answer about a pass as an observer has it, whose attitude, zero points and instrument are a little off."""
+    o, path = box.o, box.work / "obs.csv"
+    angle = rng.uniform(0, 2 * math.pi)
+    off = blind.turned(truth, [o.attitude_off * rng.gauss(0, 1) for _ in range(3)], 1)
+    gain = {f"nm:{nm}": 1 + o.gain_sd * rng.gauss(0, 1) for nm in known_attitude.BANDS_NM}
+    known_attitude.write_observed(light, typical, o.snr, rng, path, gain, (o.instrument * math.cos(angle), o.instrument * math.sin(angle)))
+    drifts = [word for name in seen for word in ("--drift", f"{DRIFTS[name][0]}={name}_asked")]
+    return box.asked("health", path, "--scenario", box.scenario("fit", off, "rays"), *drifts)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("attitudes", type=int)
@@ -78,45 +107,33 @@ def main():
     parser.add_argument("--instrument", type=float, default=0.002)
     parser.add_argument("--attitude-off", type=float, default=0.1)
     parser.add_argument("--gain-sd", type=float, default=0)
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    blind.add_places(parser)
     o, given = parser.parse_known_args()  # what is not ours goes to umov invert
     o.rest = ["--floor", 0, "--zero-point-sd", max(o.gain_sd, 1e-6), "--attitude-sd", o.attitude_off, *given]
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = blind.work_folder(o)
     fresh = {**chamfered_box.names(False), "px": "gold_fresh", "my": "paint_fresh"}
+    del fresh["pz"]  # all gold is one group
     box = known_attitude.Box(o, work, fresh, materials(), o.epochs, same=[("pz", "px")])
-    fresh.pop("pz")
     rng = random.Random(o.seed)
     typical = statistics.median(r["intensity"] for _ in range(20) for r in box.light(blind.random_attitude(rng)) if r["band"] == "nm:550")
-    unchanged, beside, changed = ({name: Count(DRIFTS[name][1] if is_changed else 0) for name in DRIFTS} for is_changed in (False, False, True))
+    counts = {name: Counts(part) for name, (_, part) in DRIFTS.items()}
     flagged = asked = 0
     for place in range(o.attitudes):
-        while True:
-            truth = blind.random_attitude(rng)
-            light = box.light(truth)
-            seen = [name for name, (group, _) in DRIFTS.items() if total(box.light(truth, **{group: "dark"})) <= (1 - SEEN) * total(light)]
-            if total(light) > 0 and seen:
-                break
+        truth, light, seen = lit_attitude(box, rng)
         aged = {name: box.light(truth, **{DRIFTS[name][0]: f"{name}_aged"}) for name in seen}
         each = o.passes // o.attitudes
-        for k, name in [(k, None) for k in range(each)] + [(k, name) for name in seen for k in range(max(each // 10, 1))]:
-            angle = rng.uniform(0, 2 * math.pi)
-            off = known_attitude.turned_by(truth, [o.attitude_off * rng.gauss(0, 1) for _ in range(3)])
-            known_attitude.write_observed(aged[name] if name else light, typical, o.snr, rng, work / "obs.csv", {f"nm:{nm}": 1 + o.gain_sd * rng.gauss(0, 1) for nm in known_attitude.BANDS_NM},
-                                          (o.instrument * math.cos(angle), o.instrument * math.sin(angle)))
-            answer = box.asked("health", work / "obs.csv", "--scenario", box.scenario("fit", off, "rays"), *(w for n in seen for w in ("--drift", f"{DRIFTS[n][0]}={n}_asked")))
+        for changed in [None] * each + [name for name in seen for _ in range(max(each // 10, 1))]:
+            answer = asked_of(box, truth, aged.get(changed, light), typical, seen, rng)
             for row in answer["health"]:
-                one = next(n for n in seen if row["parameter"].startswith(DRIFTS[n][0] + "="))
-                (unchanged if name is None else changed if name == one else beside)[one].add(row, place)
-            flagged += answer["u_null_test"]["flagged"] if name is None else 0
-            asked += name is None
-        print(f"attitude {place}: {', '.join(seen)}; " + "; ".join(f"{n} alarms {unchanged[n].seen}, seen {changed[n].seen} of {changed[n].passes}" for n in DRIFTS) + f"; flagged {flagged} of {asked}", flush=True)
-    for name, (_, part) in DRIFTS.items():
-        if changed[name].passes:
-            print(f"{name} changed by {100 * part:g} %: {changed[name].words()}\n{name} unchanged: {unchanged[name].words()}")
-        if beside[name].passes:
-            print(f"{name} unchanged while the other has changed: {beside[name].words()}")
+                name = next(n for n in seen if row["parameter"].startswith(DRIFTS[n][0] + "="))
+                counts[name].of(changed, name).add(row, place)
+            flagged += answer["u_null_test"]["flagged"] if changed is None else 0
+            asked += changed is None
+        print(f"attitude {place}: {', '.join(seen)}; " + "; ".join(f"{n} alarms {c.unchanged.seen}, seen {c.changed.seen} of {c.changed.passes}" for n, c in counts.items()) + f"; flagged {flagged} of {asked}", flush=True)
+    for name, c in counts.items():
+        for what, one in ((f"changed by {100 * DRIFTS[name][1]:g} %", c.changed), ("unchanged", c.unchanged), ("unchanged while the other has changed", c.beside)):
+            if one.passes:
+                print(f"{name} {what}: {one.words()}")
     low, high = coverage.interval(asked, flagged)
     print(f"polarization of the instrument of {100 * o.instrument:g} %, S/N {o.snr:g}, {len(light) // 3} epochs: flagged {flagged} of {asked} passes ({low:.4f} to {high:.4f})")
 

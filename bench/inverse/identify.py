@@ -12,13 +12,11 @@ import argparse
 import collections
 import json
 import math
-import pathlib
 import random
 import resource
 import shutil
 import statistics
 import subprocess
-import tempfile
 import time
 
 import blind
@@ -87,13 +85,11 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--own", action="store_true")
     parser.add_argument("--copies", type=int, default=10)
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    blind.add_places(parser)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov identify
     if o.copies < 2:
         parser.error("--copies: two at least, or there is no object more to be timed")
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = blind.work_folder(o)
     maker = Maker(o, work)
     if o.index:
         return index(o, work, maker)

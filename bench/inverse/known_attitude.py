@@ -1,5 +1,4 @@
 """The pass of case_r.py before a chamfered box whose attitude is known: light of it with other materials, and tables of what an observer has of it."""
-import csv
 import json
 import math
 import re
@@ -20,13 +19,6 @@ def index_of(name):
         part = (nm / 1000 - a) / (b - a)
         out.append([x + part * (y - x) for x, y in zip(low, high)])
     return out
-
-
-def turned_by(q, degrees):
-    """The attitude after a turn about the body's axes by a small rotation vector [deg]."""
-    half = [math.radians(d) / 2 for d in degrees]
-    n = math.sqrt(sum(h * h for h in half))
-    return blind.product(q, [math.cos(n), *(math.sin(n) * h / n for h in half)]) if n else q
 
 
 class Box:
@@ -54,8 +46,7 @@ class Box:
     def light(self, attitude, **other):
         """Rows of a run, as numbers where they are numbers."""
         blind.run(self.o.umov, "run", self.scenario("true", attitude, "rays", **other), "-o", self.work / "truth", "--force", "-q")
-        with open(self.work / "truth/lightcurve.csv") as file:
-            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        rows = blind.rows_of(self.work / "truth/lightcurve.csv")
         return [{k: row[k] if k in ("time_utc", "band") else float(row[k] or 0) for k in ("time_utc", "band", "I", "intensity", "q", "u")} for row in rows]
 
     def asked(self, *words):
@@ -69,7 +60,7 @@ def write_observed(rows, typical, snr, rng, path, gain=None, instrument=(0, 0)):
     for r in rows:
         true = r["intensity"]
         scale = 3.1 * r["I"] / true if true > 0 else unit
-        sd = math.sqrt(0.8 * true * typical + 0.2 * typical**2) / snr
+        sd = blind.photon_sd(true, typical, snr)
         cells = [r["time_utc"], r["band"], f"{scale * ((gain or {}).get(r['band'], 1) * true + sd * rng.gauss(0, 1)):.6e}", f"{scale * sd:.6e}", "", "", "", ""]
         if true > 5 * sd:
             e = math.sqrt(2) * sd / true

@@ -9,12 +9,10 @@ import argparse
 import contextlib
 import json
 import os
-import pathlib
 import random
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 
 import blind
@@ -136,12 +134,10 @@ def main():
     parser.add_argument("--curves", type=int, default=3, help="of cubesats, of the job that is killed; 0: none")
     parser.add_argument("--snr", type=float, default=100)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    blind.add_places(parser)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert pose
     o.wrong, o.surfaces, o.truth = 0, 1, None
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = blind.work_folder(o)
     rng = random.Random(o.seed)
     o.follow = o.rest[:o.rest.index("--grid")] + o.rest[o.rest.index("--grid") + 2:] if "--grid" in o.rest else o.rest
     for _ in range(o.trials):

@@ -9,11 +9,9 @@ materials of 5 % and more; root mean square over materials; of areas that are th
 import argparse
 import itertools
 import math
-import pathlib
 import random
 import re
 import statistics
-import tempfile
 
 import numpy
 
@@ -37,7 +35,7 @@ def condition(one, other, snr, typical):
     for rows in (one, other):
         column = []
         for r, other_row in zip(rows, other):
-            sd = math.sqrt(0.8 * other_row["intensity"] * typical + 0.2 * typical**2) / snr
+            sd = blind.photon_sd(other_row["intensity"], typical, snr)
             column += [r["intensity"] / sd, *(r[k] * r["intensity"] / (math.sqrt(2) * sd) for k in "qu")]
         columns.append(numpy.array(column) / numpy.linalg.norm(column))
     return numpy.linalg.cond(numpy.array(columns).T)
@@ -81,12 +79,10 @@ def main():
     parser.add_argument("--epochs", type=int, default=40)
     parser.add_argument("--candidates", default=",".join(chamfered_box.MATERIALS))
     parser.add_argument("--twins", action="store_true")
-    parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
-    parser.add_argument("--work", type=pathlib.Path)
+    blind.add_places(parser)
     o, given = parser.parse_known_args()  # what is not ours goes to umov invert
     o.rest = ["--floor", 0, "--zero-point-sd", 1e-6, *given]
-    work = o.work or pathlib.Path(tempfile.mkdtemp())
-    work.mkdir(parents=True, exist_ok=True)
+    work = blind.work_folder(o)
     names = o.candidates.split(",")
     more = "".join(f"[material.twin_{name}]\n{twin(text)}" for name, text in chamfered_box.MATERIALS.items())
     groups = [g for g in chamfered_box.names(False) if g != "edge"]

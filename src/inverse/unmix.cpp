@@ -84,13 +84,14 @@ std::vector<bool> seen(const Whitened &w, const VectorXd &parts) {
 }
 
 /// Which of those that are seen the data hold apart: the number of each one's group.
-std::vector<std::size_t> groups_of(const Whitened &w, double scale, const std::vector<bool> &seen) {
+std::vector<std::size_t> groups_of(const Whitened &w, double scale,
+                                   const std::vector<bool> &is_seen) {
   const auto n = static_cast<std::size_t>(w.columns.cols());
   std::vector<std::size_t> group(n);
   std::iota(group.begin(), group.end(), std::size_t{0});
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = a + 1; b < n; ++b) {
-      if (!seen[a] || !seen[b])
+      if (!is_seen[a] || !is_seen[b])
         continue;
       const VectorXd x = w.columns.col(static_cast<Index>(a)),
                      y = w.columns.col(static_cast<Index>(b));

@@ -201,10 +201,8 @@ std::vector<std::string> notes_of(const Health &health, const Health *baseline, 
   else if (verdict == Verdict::NoFit)
     out.emplace_back("none of these changes explains the data within their errors and --floor: is "
                      "the attitude right, and the object?");
-  if (auto words = words_of(u))
-    out.push_back(std::move(*words));
-  if (const auto words = words_of(u_before))
-    out.push_back("the baseline: " + *words);
+  note_null_test(u, out);
+  note_null_test(u_before, out, "the baseline: ");
   if (errors.has_clouds)
     out.emplace_back("--clouds is not looked at here: the sky is taken for clear");
   return out;

@@ -157,9 +157,8 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
   }
   const Health *const shown = before ? &*before : nullptr;
   out.verdict = verdict_of(health, shown);
-  const NullTest u = null_test_of(observed.curve, health.fitted.i, health.fitted.u);
-  const NullTest u_before =
-      old ? null_test_of(old->observed.curve, before->fitted.i, before->fitted.u) : NullTest{};
+  const NullTest u = null_test_of(observed.curve, health.fitted);
+  const NullTest u_before = old ? null_test_of(old->observed.curve, before->fitted) : NullTest{};
   const auto notes =
       notes_of(health, shown, out.verdict, u, u_before, observed.curve, request.errors);
   out.summary =

@@ -277,9 +277,8 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   std::vector<std::string> notes = limits_of(observed.curve, request.errors, Asked::Part);
   std::ranges::move(notes_of(rows, unmixed, out.verdict, chi2, members, request.errors.has_clouds),
                     std::back_inserter(notes));
-  const NullTest u = null_test_of(observed.curve, unmixed.fitted.i, unmixed.fitted.u);
-  if (auto words = words_of(u))
-    notes.push_back(std::move(*words));
+  const NullTest u = null_test_of(observed.curve, unmixed.fitted);
+  note_null_test(u, notes);
   out.summary =
       fmt::format("{}: {} of {}; one material alone: chi-square {:.4g}, a mixture {:.4g}, "
                   "of {} measurements",

@@ -131,7 +131,7 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
     out.verdict = Verdict::Ambiguous;
   out.axis_spread_deg = axis_spread_deg(answer);
   const BestLight best = best_light(model, answer);
-  out.null_test = null_test_of(curve, best.light.i, best.light.u);
+  out.null_test = null_test_of(curve, best.light);
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
   add_parts(model.parts(), best, out);
   out.notes = limits_of(curve, errors, Asked::Attitude);
@@ -139,8 +139,7 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   doubt_fit(answer, errors, out);
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
-  if (auto words = words_of(out.null_test))
-    out.notes.push_back(std::move(*words));
+  note_null_test(out.null_test, out.notes);
   if (!answer.is_settled)
     out.notes.emplace_back("the search did not come to rest: a better attitude than these may be "
                            "near; a larger --grid or --floor may help");

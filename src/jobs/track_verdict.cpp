@@ -82,7 +82,7 @@ Judgement judge_track(const TrackStart &now, const TrackFrame &frame, const Trac
   out.families = families_of(answer, symmetries);
   out.verdict = first_verdict(now, history, answer, out.families);
   out.axis_spread_deg = axis_spread_deg(answer);
-  out.null_test = null_test_of(curve, fitted.i, fitted.u);
+  out.null_test = null_test_of(curve, fitted);
   if (out.verdict == Verdict::Determined && is_steady(curve, frame.errors))
     out.verdict = Verdict::Undetermined;
   note_doubts(now, history, answer, frame.errors, out);
@@ -91,8 +91,7 @@ Judgement judge_track(const TrackStart &now, const TrackFrame &frame, const Trac
       out.notes.push_back(std::move(limit));
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
-  if (auto words = words_of(out.null_test))
-    out.notes.push_back(std::move(*words));
+  note_null_test(out.null_test, out.notes);
   return out;
 }
 
