@@ -125,8 +125,9 @@ def test_pyright_takes_the_gallery():
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize("name", ["start", *sorted(f"howto/{path.stem}" for path in (ROOT / "docs/howto").glob("*.md")
-                                                     if "```python" in path.read_text())])
+@pytest.mark.parametrize("name", ["start", *(
+    pytest.param(f"howto/{stem}", marks=[pytest.mark.slow] if stem in ("identify", "plan") else [])
+    for stem in sorted(path.stem for path in (ROOT / "docs/howto").glob("*.md") if "```python" in path.read_text()))])
 def test_lines_of_the_pages_run(name, tmp_path):
     """Blocks of Python of a page, one after the other, in a folder that looks like the project's."""
     for folder in ("data", "examples"):

@@ -62,6 +62,7 @@ def test_ctrl_c_stops_soon_and_leaves_nothing_broken(what, hst):
     assert engine.evaluate(sun[:1], observer[:1]).shape == (1, 1, 4)
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_what_is_done(hst):
     def at_once(what, done, total):
         if done > 0:
@@ -105,6 +106,7 @@ def poses_of(number, engine):
     return engine.evaluate(*umov.random_poses(500, 60, seed=number)).tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pool", ["threads", pytest.param("processes", marks=pytest.mark.slow)])
 def test_side_by_side_gives_the_same_bytes(pool, hst):
     engine = umov.Engine(hst, bands=["nm:550"], method="masks", threads=1)

@@ -125,6 +125,7 @@ def test_rows_are_opened_lazily(scene):
     assert str(dataset.schema.field("band").type) == "string" and dataset.schema.field("intensity").metadata[b"unit"] == b"m2 / sr"
 
 
+@pytest.mark.slow
 def test_workers_that_are_killed_cost_no_byte(scene):
     """Once the cluster is up, a worker or its child is killed by signal 9, five times, so far
     apart that a worker can start again between; nothing is left over."""
@@ -176,6 +177,7 @@ child.stdin.close()
     return str(script)
 
 
+@pytest.mark.slow
 def test_poison_is_told_and_the_others_are_done(scene, tmp_path):
     """One shard crashes its process, one hangs: three trials and two, and 18 of 20 are there."""
     program = wrapper(tmp_path, "if index == 3: os.kill(os.getpid(), signal.SIGSEGV)\n"
@@ -198,6 +200,7 @@ def told_words(tmp_path, body=""):
     return wrapper(tmp_path, f"print(*sys.argv[1:], file=open({str(tmp_path / 'words')!r}, 'a'))\n    {body}")
 
 
+@pytest.mark.slow
 def test_words_of_the_command_reach_the_workers(scene, tmp_path):
     """As umov scale run --cluster starts it: threads, memory, and the time after which a shard that hangs is ended."""
     program = told_words(tmp_path, "if index == 3: time.sleep(1000)")
@@ -216,6 +219,7 @@ def test_memory_that_is_none_is_refused(scene, memory_mb):
     assert not pathlib.Path("out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cluster", [None, "local:1"])
 def test_a_job_without_memory_for_any_shard_ends_soon(scene, cluster):
     """Three bands of a million bins are hundreds of megabytes; ten attempts, and twelve where each shard has its three at once."""
@@ -419,6 +423,7 @@ def test_what_is_not_that_of_the_folder_is_refused(scene):
         umov.scale.run(job_of(scene, 20), "out", cluster="local:1", reduce="most:intensity:2", per_shard=5)
 
 
+@pytest.mark.slow
 def test_a_full_disk_ends_the_job_on_a_cluster_and_it_goes_on(scene, tmp_path):
     """A disk of 400 kB for a job of ten times as much: no worker begins a shard behind the first that has no room."""
     disk, job = tmp_path / "disk", job_of(scene, 3000)
@@ -442,6 +447,7 @@ def test_a_full_disk_ends_the_job_on_a_cluster_and_it_goes_on(scene, tmp_path):
         subprocess.run(["umount", disk], check=True)
 
 
+@pytest.mark.slow
 def test_ctrl_c_then_the_printed_command(scene):
     job = job_of(scene, 4000)
     subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "20", "out", *job.words], check=True)
@@ -458,6 +464,7 @@ def test_ctrl_c_then_the_printed_command(scene):
     assert merged_bytes(done) == plain_bytes(job)
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_killed_ends_the_client_with_the_way_on(scene, tmp_path):
     """Kill -9 of a scheduler of its own: within ten seconds the resume command is told, and what was finished is there."""
     job, file = job_of(scene, 4000), tmp_path / "scheduler.json"

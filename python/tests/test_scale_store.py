@@ -58,6 +58,7 @@ def test_a_store_gives_the_plain_bytes(scene, store, tmp_path):  # noqa: F811
     assert result.status["bytes"] == sum(file.stat().st_size for file in here.files)
 
 
+@pytest.mark.slow
 def test_what_is_missing_is_done_again(scene, store):  # noqa: F811
     job = job_of(scene)
     before = umov.scale.run(job, store, cluster="local:1", per_shard=60)
@@ -82,6 +83,7 @@ def test_a_damaged_object_is_named(scene, store):  # noqa: F811
     assert not pathlib.Path("merged.csv").exists()
 
 
+@pytest.mark.slow
 def test_what_cannot_be_done_is_told(scene, store, tmp_path):  # noqa: F811
     program = wrapper(tmp_path, "if index == 3: os.kill(os.getpid(), signal.SIGSEGV)")
     with pytest.raises(umov.InputError, match="1 shards could not be done; shard 3: its process was ended by signal 11"):

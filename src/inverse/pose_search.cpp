@@ -440,7 +440,8 @@ double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> 
   const CurveLikelihood few(model.curve(), likelihood.errors(), some);
   const double all = static_cast<double>(likelihood.measurements()) /
                      static_cast<double>(std::max<std::size_t>(few.measurements(), 1));
-  inverse::FitPlan plan{Freedom::Attitude, 3, 0, 0, 1e-3, threads};
+  inverse::FitPlan plan{
+      .iterations = 3, .difference_rad = 1e-3, .threads = threads, .tells_covariance = false};
   auto fits = inverse::fit_turnings(model, few, places, some, plan);
   if (!fits.empty() && fits.front().at.chi2 * all > far) {
     // A search forgives up to a quarter of I, which can be a hundred times the errors: a good place
@@ -499,7 +500,7 @@ std::vector<Turning> likely_spins(const CurveModel &first, const CurveErrors &er
   const CurveLikelihood few(first.curve(), errors, some);
   const auto fits =
       inverse::fit_turnings(first, few, std::move(starts), some,
-                            {Freedom::AttitudeAndRate, 12, 4, most, 1e-3, threads, true});
+                            {Freedom::AttitudeAndRate, 12, 4, most, 1e-3, threads, true, false});
   std::size_t count = std::min(fits.size(), least);
   while (count < std::min(fits.size(), most) && fits[count].at.chi2 < fits[0].at.chi2 + far)
     ++count;

@@ -43,8 +43,9 @@ QuickLook::QuickLook(const ObservedCurve &curve, const CurveErrors &errors, std:
       data_ += s.i * s.i / known.i_variance;
     }
     if (known.l_qq > 0) {
-      row.q = static_cast<float>(s.q);
-      row.q_weight = static_cast<float>(known.l_qq * known.l_qq);
+      row.q_code = static_cast<float>(LightCodes::code_of_q(s.q));
+      const double weight = known.l_qq / LightCodes::half;
+      row.q_weight = static_cast<float>(weight * weight);
     }
     if (row.weight > 0 || row.q_weight > 0)
       rows_.push_back(row);
@@ -58,7 +59,7 @@ std::shared_ptr<const std::vector<std::uint32_t>> QuickLook::pairs_for(std::size
     return kept;
   const DirectionGrid nodes{cells};
   auto made = std::make_shared<std::vector<std::uint32_t>>();
-  made->reserve(poses());
+  made->reserve(poses() + attitudes_at_once * slots_.size());
   for (const Quaternion &q : grid_) {
     for (const std::size_t epoch : slots_) {
       const Pose pose = pose_at({q, {}}, curve_.epochs[epoch]);
@@ -66,6 +67,7 @@ std::shared_ptr<const std::vector<std::uint32_t>> QuickLook::pairs_for(std::size
           pair_of(nodes.nearest(pose.sun), nodes.nearest(pose.observer), nodes.nodes())));
     }
   }
+  made->resize(made->size() + attitudes_at_once * slots_.size()); // all are asked by so many
   kept = std::move(made);
   return kept;
 }
@@ -74,24 +76,42 @@ std::vector<float> QuickLook::look(const Signature &signature,
                                    std::span<const std::size_t> column) const {
   const LightCodes codes(signature);
   const auto pairs = pairs_for(signature.cells);
-  const std::size_t per = signature.bands * 2;
-  std::vector<float> out(grid_.size());
-  for (std::size_t k = 0; k < grid_.size(); ++k) {
-    const std::uint32_t *const at = pairs->data() + k * slots_.size();
-    float cross = 0, square = 0, chi2 = 0;
-    for (const Row &row : rows_) {
-      const std::uint16_t *const light = &signature.code[at[row.slot] * per + 2 * column[row.band]];
-      const float m = codes.i(light[0]);
-      cross += row.weight * row.i * m;
-      square += row.weight * m * m;
-      const float dq = row.q - static_cast<float>(LightCodes::q(light[1]));
-      chi2 += row.q_weight * dq * dq;
-    }
-    // The best scale, which is not negative.
-    const float gain = square > 0 && cross > 0 ? cross * cross / square : 0;
-    out[k] = chi2 + static_cast<float>(data_) - gain;
-  }
+  std::vector<Row> rows = rows_;
+  for (Row &row : rows)
+    row.band = static_cast<std::uint32_t>(2 * column[row.band]);
+  std::vector<float> out(grid_.size() + attitudes_at_once);
+  for (std::size_t k = 0; k < grid_.size(); k += attitudes_at_once)
+    look_at(signature, codes, rows, pairs->data() + k * slots_.size(), &out[k]);
+  out.resize(grid_.size());
   return out;
+}
+
+/// Attitudes whose sums do not wait for each other.
+void QuickLook::look_at(const Signature &signature, const LightCodes &codes,
+                        std::span<const Row> rows, const std::uint32_t *pairs, float *out) const {
+  constexpr std::size_t n = attitudes_at_once;
+  const std::size_t per = signature.bands * 2, slots = slots_.size();
+  const std::uint16_t *const code = signature.code.data();
+  float cross[n] = {}, square[n] = {}, chi2[n] = {};
+  for (const Row &row : rows) {
+    float m[n], q[n];
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::uint16_t *const light = code + pairs[j * slots + row.slot] * per + row.band;
+      m[j] = codes.i_or_dark(light[0]);
+      q[j] = light[1];
+    }
+    for (std::size_t j = 0; j < n; ++j) {
+      const float weighed = row.weight * m[j], dq = row.q_code - q[j];
+      cross[j] += weighed * row.i;
+      square[j] += weighed * m[j];
+      chi2[j] += row.q_weight * dq * dq;
+    }
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    // The best scale, which is not negative.
+    const float gain = square[j] > 0 && cross[j] > 0 ? cross[j] * cross[j] / square[j] : 0;
+    out[j] = chi2[j] + static_cast<float>(data_) - gain;
+  }
 }
 
 double QuickLook::log_evidence(const std::vector<float> &chi2) {

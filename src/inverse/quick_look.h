@@ -1,9 +1,12 @@
 #pragma once
 // Private: the cheap look at every object of a library.
 
+#include "inverse/light_codes.h"
+
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <umov/inverse/likelihood.h>
 #include <umov/inverse/signature.h>
 #include <vector>
@@ -37,9 +40,13 @@ private:
   /// A measurement, in floats: this is only for ranking.
   struct Row {
     std::uint32_t slot = 0, band = 0;
-    float i = 0, weight = 0, q = 0, q_weight = 0;
+    float i = 0, weight = 0, q_code = 0, q_weight = 0;
   };
-  /// Pairs of nodes: [attitude * slots + slot].
+  static constexpr std::size_t attitudes_at_once = 8;
+  /// chi2 of so many attitudes; `rows` with the place of their band's codes for its number.
+  void look_at(const Signature &signature, const LightCodes &codes, std::span<const Row> rows,
+               const std::uint32_t *pairs, float *out) const;
+  /// Pairs of nodes: [attitude * slots + slot], and as many zeros as a look takes at once.
   std::shared_ptr<const std::vector<std::uint32_t>> pairs_for(std::size_t cells) const;
 
   const ObservedCurve &curve_;

@@ -86,11 +86,13 @@ PoseLighting lighting_of(const Signature &signature, unsigned threads) {
             for (std::size_t b = 0; b < bands; ++b, at += 2) {
               if (at[0] == 0)
                 continue;
-              const float i = weight * codes.i(at[0]);
-              out.i[k * bands + b] += static_cast<double>(i);
-              out.q[k * bands + b] += static_cast<double>(i) * LightCodes::q(at[1]);
+              const auto i = static_cast<double>(weight * codes.i(at[0]));
+              out.i[k * bands + b] += i;
+              out.q[k * bands + b] += i * at[1];
             }
           }
+        for (std::size_t b = k * bands; b < (k + 1) * bands; ++b)
+          out.q[b] = LightCodes::q(out.q[b], out.i[b]);
       }
     });
     return true;

@@ -235,14 +235,19 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
             return is_near(o, c.turning, 1 * degree, *reach_s);
           }))
         starts.push_back(c.turning);
-    const auto fits =
-        inverse::fit_turnings(coarse_, rough, starts, epochs,
-                              {Freedom::AttitudeAndRate, 6, 2, kept / 2, 5e-3, options_.threads});
-    if (fits.empty())
-      return false;
     const double told_s = inverse::farthest_of(curve, epochs);
     reach_s = next_reach(told_s);
     is_fanned = reach_s && is_pause(told_s, *reach_s);
+    const auto fits = inverse::fit_turnings(coarse_, rough, starts, epochs,
+                                            {.freedom = Freedom::AttitudeAndRate,
+                                             .iterations = 6,
+                                             .cut_after = 2,
+                                             .kept = kept / 2,
+                                             .difference_rad = 5e-3,
+                                             .threads = options_.threads,
+                                             .tells_covariance = is_fanned});
+    if (fits.empty())
+      return false;
     found.clear();
     if (is_fanned)
       fan_out(std::span(fits).first(std::min(fanned, fits.size())), inverse::span_of(curve, epochs),

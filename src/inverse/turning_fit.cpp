@@ -134,6 +134,19 @@ void take(Running &one, const Turning &tried, const Comparison &compared) {
     one.fit.is_converged = is_at_rest;
 }
 
+/// The derivatives that a covariance is told from.
+bool ask_covariances(const CurveModel &model, const CurveLikelihood &likelihood,
+                     std::vector<Running> &fits, std::span<const std::size_t> epochs,
+                     const FitPlan &plan) {
+  std::vector<Running *> all;
+  for (Running &one : fits) {
+    if (one.stage == Stage::Last)
+      go_on(one, Stage::Fine); // rough ones make a valley too short
+    all.push_back(&one);
+  }
+  return differentiate(model, likelihood, all, epochs, plan);
+}
+
 /// The same turning, as far as a fit on its way tells.
 bool is_same(const Turning &a, const Turning &b, double span_s) {
   constexpr double near = 5e-3; // [rad]
@@ -258,13 +271,7 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     for (std::size_t k = 0; k < active.size(); ++k)
       take(*active[k], tried[k], compared[k]);
   }
-  std::vector<Running *> all;
-  for (Running &one : fits) {
-    if (one.stage == Stage::Last)
-      go_on(one, Stage::Fine); // rough ones make a valley too short
-    all.push_back(&one);
-  }
-  if (!differentiate(model, likelihood, all, epochs, plan)) // the covariance's
+  if (plan.tells_covariance && !ask_covariances(model, likelihood, fits, epochs, plan))
     return {};
   keep_best(fits, fits.size(), span);
   std::vector<TurningFit> out;

@@ -47,6 +47,9 @@ struct FitPlan {
   double difference_rad = 2e-3;
   unsigned threads = 0;
   bool drops_hopeless = false; ///< at each cut: fits that would not come near the best by the end
+  /// Each fit's `information` is that at its end, by half widths; else of wherever it was asked
+  /// last, and three neighbours of each are not lit.
+  bool tells_covariance = true;
 };
 
 /// Levenberg-Marquardt (Marquardt 1963) of all starts side by side, scale and zero points

@@ -1,6 +1,7 @@
 #include "jobs/invert_light.h"
 
 #include <algorithm>
+#include <umov/light/engine.h>
 #include <umov/light/point_budget.h>
 #include <utility>
 
@@ -50,6 +51,24 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
                        std::make_shared<BetweenTable>(coarse, sun_radius_rad)};
 }
 
+/// A search forgives a quarter of I at first and a twelfth in the end.
+Result<void> prepare_coarse(const Scenario &direct, const InvertRequest &request,
+                            SearchedLight &out, const JobOptions &options,
+                            const std::atomic<bool> *cancel) {
+  constexpr std::size_t few = 100; // facets that look different ways are lit within a microsecond
+  const LightModel &finer = (out.masks ? *out.masks : out.light).model();
+  if (request.method == LightMethod::Rays || finer.facts().classes < few)
+    return {};
+  SignatureRequest lit;
+  lit.method = LightMethod::Masks;
+  lit.accuracy = coarse_accuracy;
+  lit.has_half_widths = false;
+  Diagnostics twice; // the object was read before: its warnings are known
+  UMOV_ASSIGN(coarse, PoseLight::make(direct, lit, options, twice, cancel));
+  out.coarse.emplace(std::move(coarse));
+  return {};
+}
+
 } // namespace
 
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
@@ -72,11 +91,13 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
     SignatureRequest rough;
     rough.method = LightMethod::Masks;
     rough.accuracy = lit.accuracy;
+    rough.has_half_widths = false;
     Diagnostics twice;
     UMOV_ASSIGN(masks, PoseLight::make(direct, rough, options, twice, cancel));
     out.masks.emplace(std::move(masks));
     out.light.model().take_masks_of(out.masks->model());
   }
+  UMOV_TRY(prepare_coarse(direct, request, out, options, cancel));
   UMOV_ASSIGN(between, prepare_between(scenario, request, out, options, cancel));
   out.between = std::move(between);
   return out;
@@ -143,16 +164,20 @@ BetweenTable::Lighting lighting_between(const PoseLight &whole, unsigned threads
           threads};
 }
 
+/// Light without its half-widths.
+PoseLighting as_it_is(const PoseLight &light, unsigned threads, const Monitor &monitor) {
+  return
+      [lit = lighting_of(light, threads, monitor)](std::span<const Pose> poses, StokesTable &out) {
+        const bool is_whole = lit(poses, out);
+        out.i_err.clear();
+        return is_whole;
+      };
+}
+
 /// Masks as they are, without half-widths.
 PoseLighting by_masks(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
-  if (!ready.masks)
-    return lighting_of(ready.light, threads, monitor);
-  return [masks = lighting_of(*ready.masks, threads, monitor)](std::span<const Pose> poses,
-                                                               StokesTable &out) {
-    const bool is_whole = masks(poses, out);
-    out.i_err.clear();
-    return is_whole;
-  };
+  return ready.masks ? as_it_is(*ready.masks, threads, monitor)
+                     : lighting_of(ready.light, threads, monitor);
 }
 
 /// The same with the parts that there are.
@@ -199,8 +224,10 @@ PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const 
 }
 
 PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
-  return with_between(ready, by_masks(ready, threads, monitor), &FittedBetween::coarse, threads,
-                      monitor);
+  return with_between(ready,
+                      ready.coarse ? as_it_is(*ready.coarse, threads, monitor)
+                                   : by_masks(ready, threads, monitor),
+                      &FittedBetween::coarse, threads, monitor);
 }
 // NOLINTEND(clang-analyzer-cplusplus.NewDeleteLeaks)
 
@@ -228,8 +255,9 @@ ManifestInput::Light light_used(const SearchedLight &ready, const Scenario &scen
 
 void keep_masks(const SearchedLight &ready) {
   (void)ready.light.model().keep_masks();
-  if (ready.masks)
-    (void)ready.masks->model().keep_masks();
+  for (const auto *rough : {&ready.masks, &ready.coarse})
+    if (*rough)
+      (void)(*rough)->model().keep_masks();
   if (ready.parts)
     ready.parts->keep_masks();
 }

@@ -26,8 +26,11 @@ struct FittedBetween {
 /// Light of an object as a search wants it.
 struct SearchedLight {
   PoseLight light;
-  /// For the search, where `light` mends them or is exact and slow; else none.
+  /// For the first fits, where `light` mends them or is exact and slow; else none.
   std::optional<PoseLight> masks;
+  /// For the search over all attitudes: coarse masks, and facets joined that look nearly the same
+  /// way. None of a body of few facets.
+  std::optional<PoseLight> coarse = {};
   std::optional<FittedBetween> between = {}; ///< beside `light`, which is direct
   /// The light of `light` by material, where that is not quite known and can be taken apart.
   std::unique_ptr<LightByPart> parts = {};

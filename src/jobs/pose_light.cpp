@@ -79,6 +79,7 @@ LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &r
   out.seed = request.seed.value_or(scenario.seed);
   out.source = source;
   out.mask_file = request.mask_file;
+  out.has_half_widths = request.has_half_widths;
   return out;
 }
 

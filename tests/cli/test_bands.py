@@ -101,6 +101,7 @@ def test_a_satellite_in_a_band_is_the_sum_of_its_wavelengths(umov, tmp_path):
             assert float(row[column]) == pytest.approx(expected, abs=1e-3 * float(row["intensity"])), column
 
 
+@pytest.mark.slow
 def test_run_in_vega_magnitudes(umov, tmp_path):
     assert umov("mesh", "make", "sphere", "-o", "ball.obj").code == 0
     text = (ROOT / "examples/hst_maui.toml").read_text()

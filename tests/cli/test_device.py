@@ -124,6 +124,7 @@ def test_own_heat_is_the_processors(umov, scenario, settings):
     assert told.code == 0 and "--device auto took the cpu: own heat is lit by the processor" in told.err, told.err
 
 
+@pytest.mark.slow
 def test_a_lost_card_keeps_what_is_finished(signature, settings, tmp_path, monkeypatch):
     """The first block of 131,072 poses takes two batches, three launches each; then the same command goes on."""
     settings(UMOV_FAKE_LAUNCHES=6)

@@ -2,6 +2,8 @@
 import re
 import subprocess
 
+import pytest
+
 from conftest import ROOT, UMOV
 
 
@@ -22,6 +24,7 @@ def test_every_convention_names_a_test_that_exists():
                 assert re.search(rf"TEST(_F|_P)?\(\s*{suite},\s*{case}\)", sources), name
 
 
+@pytest.mark.slow
 def test_the_tour_of_the_readme(tmp_path):
     """Every line in its order, in a folder that looks like a clone after ./demo. What takes minutes does a part of its work."""
     tour = re.search(r"^## A tour\n.*?```\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL | re.MULTILINE).group(1)
@@ -57,6 +60,7 @@ def test_my_satellite_in_five_steps(tmp_path):
     assert (tmp_path / "out/mysat/light/lightcurve.csv").exists()
 
 
+@pytest.mark.slow
 def test_three_nights(tmp_path):
     """The recipes, one after the other, and what they say comes out."""
     blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "docs/recipes.md").read_text(), re.DOTALL)

@@ -57,6 +57,7 @@ def test_fits_table_opens_with_units_and_the_same_numbers(umov, wing, tmp_path):
             row["q_scat"] == float(ours["q_scat"])
 
 
+@pytest.mark.slow
 def test_any_number_of_threads_gives_the_same_file(umov, wing, tmp_path):
     files = []
     for threads in (1, 2, 8):

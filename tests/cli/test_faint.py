@@ -78,7 +78,7 @@ def shape_of_the_first_figure(browser, page):
     return json.loads(found["result"]["value"])
 
 
-@pytest.mark.parametrize("name", ["HST", "tumbling Agena", "GEO", "tumbling cubesat"])
+@pytest.mark.parametrize("name", ["GEO", *(pytest.param(name, marks=pytest.mark.slow) for name in ("HST", "tumbling Agena", "tumbling cubesat"))])
 def test_what_is_fainter_than_its_floor_is_marked_everywhere(umov, tmp_path, browser, name):
     scenario, options = made(umov, tmp_path, name)
     done = umov("run", scenario, "-o", "out", *options, "--set", 'output.formats=["ecsv","csv","html"]')

@@ -223,6 +223,7 @@ step_s = 60
 """
 
 
+@pytest.mark.slow
 def test_a_first_run_moves_and_says_why_on_a_terminal_only(umov, tmp_path):
     """A line every quarter of a second: the masks of so many facets take several seconds on any machine."""
     made = umov("mesh", "make", "box-wing", "--facets", 200000, "--crumple", 0.02, "-o", "heavy.obj")

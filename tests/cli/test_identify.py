@@ -92,6 +92,7 @@ def test_what_cannot_be_told_is_not_told(umov, library, tmp_path):
         assert all(row["probability"] < 0.95 for row in found["searched"])
 
 
+@pytest.mark.slow
 def test_one_epoch_and_no_number(umov, scene, library, tmp_path):
     truth_of(umov, scene, tmp_path, "metal", TRUTHS[1], 100, 1)
     lines = (tmp_path / "obs.csv").read_text().splitlines()

@@ -66,6 +66,7 @@ def test_constant_light_tells_no_period(umov, scene, ask, tmp_path):
     assert "no turn shows in it" in done.out or done.code == 4
 
 
+@pytest.mark.slow
 def test_a_body_at_rest_has_no_period(umov, scene, ask, tmp_path):
     good(umov, scene, tmp_path)
     found = ask("spin", "good.csv")

@@ -161,6 +161,7 @@ def test_folder_has_the_tables_and_says_what_it_is(umov, scene, tmp_path):
     assert (Table.read(tmp_path / "answer/modes.ecsv")["qw"] == modes["qw"]).all()
 
 
+@pytest.mark.slow
 def test_one_epoch_is_undetermined_and_says_why(umov, scene, tmp_path):
     assert umov("run", scene(TRUTHS[1], "rays", "truth"), "-q").code == 0
     observe(tmp_path, "obs.csv", 50, 1)
@@ -174,6 +175,7 @@ def test_one_epoch_is_undetermined_and_says_why(umov, scene, tmp_path):
     assert in_set(tmp_path / "answer", TRUTHS[1])
 
 
+@pytest.mark.slow
 def test_a_sphere_tells_nothing(umov, scene, tmp_path):
     assert umov("mesh", "make", "sphere", "--radius", "0.2", "--facets", "500", "-o", "ball.obj", "-q").code == 0
     ball = scene([1, 0, 0, 0], "rays", "truth", mesh="ball", materials='default = "paint_white"', step=60)
@@ -308,6 +310,7 @@ def spinning(text, rate_deg_s, step):
     return text[:at] + law + text[end:].replace("step_s = 12", f"step_s = {step}")
 
 
+@pytest.mark.slow
 def test_a_spin_comes_back_with_its_period_and_axis(umov, scene, tmp_path):
     rate = [0.0, 0.0, 9.0]  # 40 s about the body's +Z
     text = (tmp_path / scene([1, 0, 0, 0], "rays", "truth", step=4)).read_text()

@@ -265,6 +265,7 @@ def test_a_job_is_stopped_while_it_is_made(large, tmp_path, words):
     assert took < SOON
 
 
+@pytest.mark.slow
 def test_a_worker_whose_driver_went_ends_while_its_job_is_made(umov, large, tmp_path):
     """It looked when the job was made; nobody is there who would hear of it."""
     assert umov("scale", "lock", "job", "signature", "big.toml", "--poses", "4", "--phase", "60").code == 0

@@ -3,6 +3,7 @@ phase angle is (as measured: Sanchez et al. 2001, Kosaka et al. 2020 found 10 to
 import math
 
 import numpy
+import pytest
 from astropy.table import Table
 
 from conftest import ROOT
@@ -118,6 +119,7 @@ def write_flashing_series(path):
     path.write_text("\n".join(lines) + "\n")
 
 
+@pytest.mark.slow
 def test_flashes_are_reduced_as_a_series(umov, tmp_path):
     """O18's bars with flashes: brightness as splines or as a Fourier series of the raw counts, against the truth; sets that are
     differenced take the flashes for polarization."""

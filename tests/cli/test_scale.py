@@ -139,6 +139,7 @@ def test_tasks_of_an_array_share_the_shards(umov, scenario, tmp_path):
     assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_kills_of_workers_and_of_all_cost_no_byte(umov, scenario, tmp_path):
     """Ten times something of the job is killed by signal 9; no process is left over."""
     command = slow_signature_of(umov, scenario, 3000)
@@ -187,6 +188,7 @@ def test_ctrl_c_says_how_to_go_on(umov, scenario, tmp_path):
     assert not list((tmp_path / "job/tmp").iterdir())
 
 
+@pytest.mark.slow
 def test_ten_interrupts_and_the_printed_command_give_the_plain_bytes(umov, scenario, tmp_path):
     """Ctrl-C at random moments, from before the first shard on; what is printed is what is called next."""
     command = slow_signature_of(umov, scenario, 6000)
@@ -276,6 +278,7 @@ def made_by(told):
     return done - before - (int(others[1]) if others else 0)
 
 
+@pytest.mark.slow
 def test_a_second_one_is_refused_unless_it_joins(umov, scenario, tmp_path):
     command = slow_signature_of(umov, scenario, 4000)
     assert umov("scale", "lock", "--per-shard", 20, "job", *command).code == 0
@@ -373,6 +376,7 @@ def passes_of_thirty(tmp_path, *more):
     return ["passes", "--orbit", "thirty.tle", *SITE, *more]
 
 
+@pytest.mark.slow
 def test_what_is_kept_of_passes_is_that_of_the_plain_table_however_they_are_cut(umov, tmp_path):
     """Shards have passes object by object, the table by their rise: what is the same goes by that."""
     command = passes_of_thirty(tmp_path)

@@ -59,7 +59,7 @@ def test_shards_of_passes_are_its_rows(umov, tmp_path, shards):
     assert sorted(found) == sorted(rows(tmp_path / "whole.csv"))
 
 
-@pytest.mark.parametrize("shards,more", [(2, []), (3, []), (3, ["--set", "render.bounces=2"])])
+@pytest.mark.parametrize("shards,more", [(2, []), *(pytest.param(3, more, marks=pytest.mark.slow) for more in ([], ["--set", "render.bounces=2"]))])
 def test_shards_of_a_run_are_its_rows(umov, scenario, tmp_path, shards, more):
     """Passes are shared out, in both tables."""
     name = scenario(("stop = 2018-01-21T05:12:00Z", "stop = 2018-01-23T08:00:00Z"),

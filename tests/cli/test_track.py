@@ -105,6 +105,7 @@ def test_a_fixed_body_is_followed_to_the_end(made):
         assert (made / "answer" / name).exists(), name
 
 
+@pytest.mark.slow
 def test_a_turning_body_is_followed_from_a_spin(made, tmp_path):
     shutil.copy(made / "cubesat.obj", tmp_path)
     write_scene(tmp_path, "truth", "rays", 4)

@@ -35,6 +35,7 @@ def examples(prefix, tmp_path_factory):
     return build
 
 
+@pytest.mark.slow
 def test_one_stokes_vector(examples):
     # The cross-section of a metal cube of 1 m is of the order of its face: between 1e-3 and 1 m2/sr.
     words = run(examples / "one_stokes_vector").split()
@@ -61,7 +62,7 @@ def test_own_material(examples):
 
 
 @pytest.mark.parametrize("compiler", ["g++", "clang++"])
-@pytest.mark.parametrize("standard", ["c++20", "c++23"])
+@pytest.mark.parametrize("standard", ["c++20", pytest.param("c++23", marks=pytest.mark.slow)])
 def test_programs_are_clean(prefix, compiler, standard):
     assert shutil.which(compiler), f"{compiler} is missing: tools/setup installs it"
     # clang 14 is told of C++23 by its working title.

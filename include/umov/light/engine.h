@@ -37,6 +37,10 @@ inline constexpr MaskQuality table_masks{62'000, 70, 70, 0.03};
 /// Typical error of I 0.1 %, up to half a minute and 300 MB.
 inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
 
+/// Typical error of I 1 %, with normals joined too: for who looks for attitudes.
+inline constexpr MaskQuality coarse_masks{16'000, 32, 32, 0};
+inline constexpr double coarse_accuracy = 0.1; ///< for which these will do
+
 /// The masks for a wanted typical error of I; nothing is mended by rays.
 MaskQuality masks_for(double accuracy);
 
@@ -57,6 +61,9 @@ struct EngineOptions {
   /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the
   /// half-widths. 0: only those that are equal to 1e-5.
   double cluster_rad = 0;
+  /// And by no more than that part of the slope of their narrowest lobe; 0: whatever the lobe.
+  double cluster_of_lobe = 0;
+  bool tells_cluster_error = true; ///< false: half-widths are as if normals were alike; quicker
   bool is_double = false; ///< the scalar reference in double instead of the vector unit in float
   bool is_intensity_only = false; ///< leaves Q = 0: to measure what polarization costs
   /// Rows of the masks are traced when a pose first asks for their direction, not all at once

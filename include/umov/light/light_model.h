@@ -39,6 +39,9 @@ struct LightOptions {
   /// Poses are far apart, as random ones are, and asked for by the million: with Auto, half-widths
   /// leave out what only neighbours in a series share and what no point of the masks has found.
   bool is_for_many_poses = false;
+  /// Half-widths are asked for. If not, Masks tell those of sampling alone, and spare what it takes
+  /// to know how much curved and joined facets are wrong by.
+  bool has_half_widths = true;
   /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
   /// Up to 64.
   std::size_t bounces = 1;

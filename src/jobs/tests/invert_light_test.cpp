@@ -21,17 +21,23 @@ TEST_F(LightOfABall, IsSummedFastForTheSearchAndExactAtTheEnd) {
   EXPECT_EQ(ready->light.model().facts().method, LightMethod::Rays);
   ASSERT_TRUE(ready->masks);
   EXPECT_EQ(ready->masks->model().facts().method, LightMethod::Masks);
+  ASSERT_TRUE(ready->coarse);
+  EXPECT_LT(2 * ready->coarse->model().facts().classes, ready->masks->model().facts().classes);
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < 60; ++k)
     poses.push_back(random_pose(1, k, Angle::degrees(10 + 2 * static_cast<double>(k))));
-  StokesTable quick, last, fast, exact;
+  StokesTable quick, first, last, joined, fast, exact;
   const Monitor monitor;
   ASSERT_TRUE(quick_lighting(*ready, 1, monitor)(poses, quick));
+  ASSERT_TRUE(first_lighting(*ready, 1, monitor)(poses, first));
   ASSERT_TRUE(searched_lighting(*ready, 1, monitor)(poses, last));
+  ASSERT_TRUE(lighting_of(*ready->coarse, 1, monitor)(poses, joined));
   ASSERT_TRUE(lighting_of(*ready->masks, 1, monitor)(poses, fast));
   ASSERT_TRUE(lighting_of(ready->light, 1, monitor)(poses, exact));
-  EXPECT_EQ(quick.i, fast.i);
+  EXPECT_EQ(quick.i, joined.i);
+  EXPECT_EQ(first.i, fast.i);
   EXPECT_EQ(last.i, exact.i);
+  EXPECT_NE(joined.i, fast.i);
   EXPECT_NE(fast.i, exact.i);
   // 1 % of the ball full of light: half of what a search takes the model for; 5000 facets give
   // .998.

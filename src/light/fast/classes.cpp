@@ -32,7 +32,7 @@ struct CellHash {
 
 class Joiner {
 public:
-  explicit Joiner(double tolerance) : tolerance_(tolerance), size_(2 * tolerance) {}
+  explicit Joiner(std::span<const double> tolerance_of) : tolerance_of_(tolerance_of) {}
 
   /// `cell` > 0: with all others that have their `place` in the same cell of directions, that wide.
   void add(std::uint32_t element, Vec3<Body> normal, Vec3<Body> place, double area,
@@ -112,10 +112,11 @@ private:
   /// The class whose first normal is near, or a new one. Cells are twice the tolerance wide, so
   /// that the eight around the nearest corner hold all that is near.
   std::uint32_t find(Vec3<Body> n, std::uint32_t slot, float side) {
-    const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(x / size_)); };
+    const double tolerance = std::max(tolerance_of_[slot], equal_normals_rad), size = 2 * tolerance;
+    const auto cell = [&](double x) { return static_cast<std::int64_t>(std::floor(x / size)); };
     const Cell home{cell(n.x), cell(n.y), cell(n.z), slot, side > 0 ? 0u : 1u, 0};
     const auto step = [&](double x, std::int64_t c) {
-      return x / size_ - static_cast<double>(c) < 0.5 ? -1 : 1;
+      return x / size - static_cast<double>(c) < 0.5 ? -1 : 1;
     };
     const std::int64_t sx = step(n.x, home.x), sy = step(n.y, home.y), sz = step(n.z, home.z);
     for (int k = 0; k < 8; ++k) {
@@ -125,13 +126,13 @@ private:
       c.z += (k & 4) != 0 ? sz : 0;
       const auto [first, last] = by_cell_.equal_range(c);
       for (auto it = first; it != last; ++it)
-        if (norm(sums_[it->second].first - n) <= tolerance_)
+        if (norm(sums_[it->second].first - n) <= tolerance)
           return it->second;
     }
     return add_class(home, n);
   }
 
-  double tolerance_, size_;
+  std::span<const double> tolerance_of_; ///< of each slot
   std::vector<Sum> sums_;
   std::vector<Member> members_;
   std::unordered_multimap<Cell, std::uint32_t, CellHash> by_cell_;
@@ -164,9 +165,9 @@ Vec3<Body> place_of(const Element &e, Vec3<Body> middle) {
 
 } // namespace
 
-FacetClasses join_facets(const Elements &elements, double tolerance_rad,
+FacetClasses join_facets(const Elements &elements, std::span<const double> tolerance_rad,
                          const std::atomic<bool> *cancel) {
-  Joiner joiner(std::max(tolerance_rad, equal_normals_rad));
+  Joiner joiner(tolerance_rad);
   for (std::size_t i = 0; i < elements.list.size(); ++i) {
     leave_if_stopped(cancel, i);
     const Element &e = elements.list[i];

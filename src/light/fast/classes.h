@@ -4,6 +4,7 @@
 #include "light/reference/elements.h"
 
 #include <atomic>
+#include <span>
 
 namespace umov {
 
@@ -25,11 +26,12 @@ struct FacetClasses {
 /// Normals nearer than this are one [rad]: rounding of a mesh file's digits.
 inline constexpr double equal_normals_rad = 1e-5;
 
-/// Joins sides of elements whose normals lie within `tolerance_rad` of the first of the class.
+/// Joins sides of elements whose normals lie within the tolerance of their slot of the first of the
+/// class.
 /// Curved elements count with the normal at their middle, and those that turn less than an element
 /// may are joined up to that turn: classes follow the curvature, however fine the mesh.
 /// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
-FacetClasses join_facets(const Elements &elements, double tolerance_rad,
+FacetClasses join_facets(const Elements &elements, std::span<const double> tolerance_rad,
                          const std::atomic<bool> *cancel = nullptr);
 
 } // namespace umov

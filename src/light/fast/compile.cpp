@@ -82,7 +82,7 @@ Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool i
 
 CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypotheses,
                             const SharedSlots &shared, const FacetClasses &classes,
-                            const GroupPlan &plan, double cluster_rad, bool is_intensity_only) {
+                            const GroupPlan &plan, bool tells_spread, bool is_intensity_only) {
   CompiledScene out;
   out.area_m2 = 0;
   for (const FacetClass &c : classes.list)
@@ -121,7 +121,7 @@ CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypoth
     }
     const auto index = static_cast<std::uint32_t>(out.data.groups.size());
     out.data.groups.push_back(facets);
-    if (cluster_rad > 0)
+    if (tells_spread)
       out.data.cluster_error.push_back(error);
     if (out.data.chunks.empty() || out.data.chunks.back().slot != it->second ||
         out.data.chunks.back().count == backend::groups_per_chunk)

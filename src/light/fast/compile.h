@@ -23,10 +23,10 @@ struct CompiledScene {
 };
 
 /// Groups by plan, surfaces by fit: those of `scene`, and of `hypotheses`, other materials on the
-/// same mesh that the sums are to serve too. `cluster_rad` > 0 adds the error of joined normals.
+/// same mesh that the sums are to serve too. `tells_spread`: adds the error of joined normals.
 CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypotheses,
                             const SharedSlots &shared, const FacetClasses &classes,
-                            const GroupPlan &plan, double cluster_rad, bool is_intensity_only);
+                            const GroupPlan &plan, bool tells_spread, bool is_intensity_only);
 
 /// What a scene's materials make of the sums. BadInput if they were not made for one of them.
 Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool is_intensity_only,

@@ -28,7 +28,9 @@ constexpr std::size_t poses_per_task_min = 64, poses_per_task_max = 16'384;
 } // namespace
 
 MaskQuality masks_for(double accuracy) {
-  MaskQuality out = accuracy >= 0.004 ? fast_masks : fine_masks;
+  MaskQuality out = accuracy >= coarse_accuracy ? coarse_masks
+                    : accuracy >= 0.004         ? fast_masks
+                                                : fine_masks;
   out.refine_above = 0;
   return out;
 }
@@ -174,6 +176,15 @@ std::vector<std::uint32_t> some_bands(std::size_t count) {
   return out;
 }
 
+/// How unlike the normals of each slot may be that are joined.
+std::vector<double> tolerances_of(const Scene &scene, const EngineOptions &options) {
+  std::vector<double> out(2 * scene.mesh.groups.size(), options.cluster_rad);
+  for (std::uint32_t slot = 0; slot < out.size() && options.cluster_of_lobe > 0; ++slot)
+    out[slot] = std::min(options.cluster_rad,
+                         options.cluster_of_lobe * surface_of_slot(scene, slot).width());
+  return out;
+}
+
 } // namespace
 
 Engine::State::State(const Scene &of, const EngineOptions &with, const std::atomic<bool> *cancel)
@@ -182,10 +193,11 @@ Engine::State::State(const Scene &of, const EngineOptions &with, const std::atom
   facts.is_convex = is_proven_convex(scene.mesh, cancel);
   elements = make_elements(scene, visible_sides(scene.mesh, cancel), cancel);
   const SharedSlots shared = share_materials(scene, options.hypotheses, elements);
-  classes = join_facets(elements, options.cluster_rad, cancel);
+  classes = join_facets(elements, tolerances_of(scene, options), cancel);
   plan = plan_groups(classes, has_masks() ? std::max<std::size_t>(options.masks.points, 1) : 0);
   leave_if_stopped(cancel);
-  compiled = compile_scene(scene, options.hypotheses, shared, classes, plan, options.cluster_rad,
+  compiled = compile_scene(scene, options.hypotheses, shared, classes, plan,
+                           options.cluster_rad > 0 && options.tells_cluster_error,
                            options.is_intensity_only);
   leave_if_stopped(cancel);
   if (!(options.cluster_rad > 0)) // unlike normals are one there, whatever the lobe

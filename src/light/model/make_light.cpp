@@ -155,7 +155,8 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
                                   "cpu");
   std::vector<double> typical_i;
   std::optional<Engine> unhidden;
-  if (!has_rays || options.accuracy_floor.value_or(0) > 0)
+  const bool has_widths = options.has_half_widths || options.method == LightMethod::Auto;
+  if ((!has_rays && has_widths) || options.accuracy_floor.value_or(0) > 0)
     typical_i = typical_light(unhidden.emplace(unhidden_engine(scene, cancel)), cancel);
   if (!options.mask_file.empty() && !joints.empty())
     return fail(ErrorCode::BadInput,
@@ -165,7 +166,8 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
   if (has_rays)
     return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i, cancel,
                                        std::move(chains));
-  return MasksLight::make(scene, std::move(joints), options, typical_i, *unhidden, begin, cancel,
+  return MasksLight::make(scene, std::move(joints), options, typical_i,
+                          !has_rays && has_widths ? &*unhidden : nullptr, begin, cancel,
                           std::move(chains));
 }
 

@@ -31,15 +31,17 @@ std::string in_words(const LightFacts &facts, const MaskQuality &masks) {
 } // namespace
 
 MasksLight::MasksLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
-                       const std::vector<double> &typical_i, const Engine &unhidden,
+                       const std::vector<double> &typical_i, const Engine *unhidden,
                        const std::atomic<bool> *cancel)
     : LightModel(of, std::move(turning)), options_(options), floor_i_(floor_of(options, typical_i)),
-      curved_(scene(), unhidden, options.threads, cancel),
-      material_of_(material_of_slots(scene(), materials())) {}
+      material_of_(material_of_slots(scene(), materials())) {
+  if (unhidden != nullptr)
+    curved_.emplace(scene(), *unhidden, options.threads, cancel);
+}
 
 Result<std::unique_ptr<LightModel>>
 MasksLight::make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-                 const std::vector<double> &typical_i, const Engine &unhidden,
+                 const std::vector<double> &typical_i, const Engine *unhidden,
                  std::chrono::steady_clock::time_point begin, const std::atomic<bool> *cancel,
                  ChainSharing chains) {
   std::unique_ptr<MasksLight> out(
@@ -60,8 +62,13 @@ Result<void> MasksLight::prepare(std::chrono::steady_clock::time_point begin,
                                             : fast_masks;
   if (is_auto) { // the allowance for curved elements comes on top of what sampling leaves
     const double most = options_.is_for_many_poses ? 0.95 : 0.9;
-    const double left = std::clamp(0.95 - curved_.typical() / options_.accuracy, 0.4, most);
+    const double left = std::clamp(0.95 - curved_->typical() / options_.accuracy, 0.4, most);
     with.masks.refine_above = left * options_.accuracy;
+  }
+  with.tells_cluster_error = options_.has_half_widths;
+  if (!is_auto && options_.accuracy >= coarse_accuracy) {
+    with.cluster_rad = 0.1;
+    with.cluster_of_lobe = 0.5;
   }
   with.doubts_all = is_auto && !options_.is_for_many_poses;
   with.is_for_many_poses = options_.is_for_many_poses;
@@ -167,7 +174,8 @@ bool MasksLight::light(std::span<const Pose> poses, std::span<const double> angl
   if (!is_done)
     return false;
   const auto add_curved = [&] {
-    curved_.add_to(out, poses, task.threads, task.cancel);
+    if (curved_)
+      curved_->add_to(out, poses, task.threads, task.cancel);
     return true;
   };
   if (!unless_stopped(task.cancel, add_curved))

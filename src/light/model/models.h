@@ -33,9 +33,10 @@ private:
 /// Masks; with LightMethod::Auto mended by rays, class by class and pose by pose.
 class MasksLight final : public LightModel {
 public:
+  /// `unhidden`: the engine without visibility; null where half-widths are not asked for.
   static Result<std::unique_ptr<LightModel>>
   make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-       const std::vector<double> &typical_i, const Engine &unhidden,
+       const std::vector<double> &typical_i, const Engine *unhidden,
        std::chrono::steady_clock::time_point begin, const std::atomic<bool> *cancel,
        ChainSharing chains = {});
   [[nodiscard]] std::shared_ptr<const Integrator>
@@ -53,7 +54,7 @@ public:
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-             const std::vector<double> &typical_i, const Engine &unhidden,
+             const std::vector<double> &typical_i, const Engine *unhidden,
              const std::atomic<bool> *cancel);
   Result<void> prepare(std::chrono::steady_clock::time_point begin, const std::atomic<bool> *cancel,
                        ChainSharing chains);
@@ -63,8 +64,8 @@ private:
   [[nodiscard]] std::vector<std::size_t> inaccurate(const StokesTable &table) const;
 
   LightOptions options_;
-  std::vector<double> floor_i_; ///< what the accuracy refers to at least, per node
-  CurvedErrors curved_;
+  std::vector<double> floor_i_;        ///< what the accuracy refers to at least, per node
+  std::optional<CurvedErrors> curved_; ///< where half-widths are asked for
   std::vector<std::uint32_t> material_of_;
   std::optional<Engine> engine_;             ///< of a body whose parts do not turn
   std::optional<ArticulatedEngine> turning_; ///< of one whose parts do

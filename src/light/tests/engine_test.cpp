@@ -368,6 +368,35 @@ TEST(Engine, RefiningAFlatPanelChangesNothing) {
     EXPECT_NEAR(x.i[k], y.i[k], 1e-6 * x.i[k]);
 }
 
+/// How many facets are left of crumpled foil of a slope m, and the median error of I.
+std::pair<std::size_t, double> joined_for_a_search(double m) {
+  const Scene scene =
+      scene_of(make_box_wing({10'000, 0.1}), NormalMode::Flat, {interface_of("paper_au", m)});
+  EngineOptions options;
+  options.visibility = Visibility::None;
+  const Engine exact(scene, options);
+  options.cluster_rad = 0.1;
+  options.cluster_of_lobe = 0.5;
+  options.tells_cluster_error = false;
+  const Engine joined(scene, options);
+  const auto poses = random_poses(300);
+  const StokesTable a = evaluated(exact, poses), b = evaluated(joined, poses);
+  std::vector<double> error;
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    error.push_back(relative(b.at(k, 1).stokes.i, a.at(k, 1).stokes.i));
+  return {joined.facts().classes, quantile(error, 0.5)};
+}
+
+TEST(Engine, NormalsAreJoinedWithinTheLobesThatTheyLight) {
+  // Slopes of 1/sqrt(m): half of .32 is more than what is joined at all, half of .045 is less.
+  const auto broad = joined_for_a_search(10), narrow = joined_for_a_search(500);
+  EXPECT_LT(3 * broad.first, narrow.first);
+  // (m spread^2/2), spread about .7 of the tolerance: .025 and .12, partly both ways
+  // (docs/theory/engine.md, equation 1).
+  EXPECT_LT(broad.second, 0.025);
+  EXPECT_LT(narrow.second, 0.12);
+}
+
 TEST(Engine, JoinedNormalsStayWithinTheirEstimate) {
   // Crumpled foil: clusters of 0.01 rad at m = 200 move lobes by a fifteenth of their width.
   Material foil = interface_of("paper_au", 200);
