@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """What it takes to follow an object while it is observed: `umov invert track` from the answer about the first half of a pass through the
-second, the time of each epoch more in one thread by masks; and whether that, killed and begun anew or cut in two, and a job of curves of
+second, the time of each epoch more by masks; and whether that, killed and begun anew or cut in two, and a job of curves of
 cubesats that is killed and goes on, give the same bytes.
 
-usage: live.py [--object hst] [--trials 3] [--curves 3] [--snr 100] [--seed 1] [--umov PATH] [--work DIR] [options of umov invert pose]
+usage: live.py [--object hst] [--trials 3] [--curves 3] [--snr 100] [--seed 1] [--threads 2] [--umov PATH] [--work DIR] [options of umov invert pose]
 The time of an epoch is that of the filters, light and all, as umov invert track -v tells it."""
 import argparse
 import contextlib
@@ -35,7 +35,7 @@ def write_epochs(path, head, epochs):
 def follow(o, work, observations, start, out):
     """What -v tells of the time of an epoch; verdict.json."""
     words = ("invert", "track", work / observations, "--scenario", work / "fit.toml", "--start", work / start, "-o", work / out, "--threads",
-             1, "-v", *o.follow)
+             o.threads, "-v", *o.follow)
     done = subprocess.run([o.umov, *map(str, words)], capture_output=True, text=True)
     if done.returncode not in (0, 4):
         raise SystemExit(done.stderr[-2000:])
@@ -54,7 +54,7 @@ def live(o, work, truth):
     middle = (half + len(epochs)) // 2
     for name, some in (("first", epochs[:half]), ("rest", epochs[half:]), ("rest_a", epochs[half:middle]), ("rest_b", epochs[middle:])):
         write_epochs(work / f"{name}.csv", head, some)
-    blind.run(o.umov, "invert", "pose", work / "first.csv", "--scenario", work / "fit.toml", "-o", work / "start", "-q", "--threads", 1,
+    blind.run(o.umov, "invert", "pose", work / "first.csv", "--scenario", work / "fit.toml", "-o", work / "start", "-q", "--threads", o.threads,
               *o.rest, ok=(0, 4))
     start = json.loads((work / "start/verdict.json").read_text())
     if start["verdict"] == "no_fit":
@@ -72,7 +72,7 @@ def live(o, work, truth):
         follow(o, work, "rest_b.csv", "cut_a", "cut_b")
         in_two = "the same bytes" if same(work / "cut_b", work / "held") else "OTHER BYTES"
     command = [o.umov, "invert", "track", work / "rest.csv", "--scenario", work / "fit.toml", "--start", work / "start", "-o",
-               work / "killed", "--threads", "1", "-q", *o.follow]
+               work / "killed", "--threads", o.threads, "-q", *o.follow]
     process = subprocess.Popen(list(map(str, command)))
     time.sleep(0.5 * seconds)
     is_killed = process.poll() is None
@@ -134,6 +134,7 @@ def main():
     parser.add_argument("--curves", type=int, default=3, help="of cubesats, of the job that is killed; 0: none")
     parser.add_argument("--snr", type=float, default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--threads", type=int, default=2)
     blind.add_places(parser)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert pose
     o.wrong, o.surfaces, o.truth = 0, 1, None

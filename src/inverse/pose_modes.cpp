@@ -56,7 +56,7 @@ bool is_same_spin(const Turning &better, const Spread &spread, const Turning &ot
 } // namespace
 
 std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_s) {
-  constexpr std::size_t most = 40;
+  constexpr std::size_t most = 120;
   std::vector<PoseMode> out;
   std::vector<Spread> spreads;
   double best = 1e300;

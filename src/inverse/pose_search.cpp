@@ -91,7 +91,7 @@ Result<std::vector<Turning>> search_grid(const CurveModel &model, const SearchOp
 bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
   constexpr double widest = 10 * degree;
   constexpr double least = 60; // effective samples
-  constexpr std::ptrdiff_t most = 20;
+  constexpr std::ptrdiff_t most = 8;
   constexpr double little = 1e-3; // what modes hold that do not count
   return samples.effective >= least &&
          std::ranges::count_if(modes, [](const PoseMode &m) { return m.weight > little; }) <=
