@@ -108,7 +108,8 @@ void update(std::vector<PoseMode> &modes, const std::vector<Proposal> &mixture,
 std::vector<Proposal> mixture_of(const std::vector<PoseMode> &modes, double span_s) {
   std::vector<Proposal> out;
   double sum = 0;
-  constexpr double least = 0.02; // a mode that seems light is looked at too
+  constexpr double most = 0.02, of_all = 0.8; // a mode that seems light is looked at too
+  const double least = std::min(most, of_all / static_cast<double>(modes.size()));
   for (const PoseMode &mode : modes) {
     out.push_back(proposal_of(mode, span_s));
     sum += out.back().weight = std::max(mode.weight, least);

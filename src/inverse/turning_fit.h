@@ -48,7 +48,7 @@ struct FitPlan {
   unsigned threads = 0;
   bool drops_hopeless = false; ///< at each cut: fits that would not come near the best by the end
   /// Each fit's `information` is that at its end, by half widths; else of wherever it was asked
-  /// last, and three neighbours of each are not lit.
+  /// last, and a neighbour of each for each unknown is not lit.
   bool tells_covariance = true;
 };
 

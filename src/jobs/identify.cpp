@@ -221,8 +221,9 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
                       {named->second});
   lights_[k] = made;
   const CurveModel model(curve, whole_lighting(light, options_.threads, monitor_), columns);
+  const CurveModel first(curve, first_lighting(light, options_.threads, monitor_), columns);
   const CurveModel quick(curve, quick_lighting(light, options_.threads, monitor_), columns);
-  UMOV_ASSIGN(found, search_pose({model, quick, quick}, search));
+  UMOV_ASSIGN(found, search_pose({model, first, quick}, search));
   used_[k] = light_used(light, scenario, diagnostics_);
   return std::optional(
       OwnAnswer{std::move(found), CurveLikelihood(curve, search.errors).log_variance()});

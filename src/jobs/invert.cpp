@@ -13,6 +13,7 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics) {
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics, monitor.cancel));
+  UMOV_TRY(take_coarse(ready, scenario, request, options, monitor.cancel));
   take_apart(ready, request, options, diagnostics, monitor.cancel);
   UMOV_ASSIGN(out,
               pose_answer(scenario, request, options, ready.observed, ready, monitor, diagnostics));

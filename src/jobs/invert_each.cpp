@@ -190,6 +190,7 @@ Result<std::unique_ptr<RangedJob>> ranged_poses(const Scenario &scenario,
                                                 Diagnostics &diagnostics) {
   Diagnostics told;
   UMOV_ASSIGN(light, prepare_light(scenario, request, options, told, made_by.cancel));
+  UMOV_TRY(take_coarse(light, scenario, request, options, made_by.cancel));
   take_apart(light, request, options, told, made_by.cancel);
   if (made_by.is_cancelled())
     return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");

@@ -1,7 +1,6 @@
 #include "jobs/invert_light.h"
 
 #include <algorithm>
-#include <umov/light/engine.h>
 #include <umov/light/point_budget.h>
 #include <utility>
 
@@ -51,24 +50,6 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
                        std::make_shared<BetweenTable>(coarse, sun_radius_rad)};
 }
 
-/// A search forgives a quarter of I at first and a twelfth in the end.
-Result<void> prepare_coarse(const Scenario &direct, const InvertRequest &request,
-                            SearchedLight &out, const JobOptions &options,
-                            const std::atomic<bool> *cancel) {
-  constexpr std::size_t few = 100; // facets that look different ways are lit within a microsecond
-  const LightModel &finer = (out.masks ? *out.masks : out.light).model();
-  if (request.method == LightMethod::Rays || finer.facts().classes < few)
-    return {};
-  SignatureRequest lit;
-  lit.method = LightMethod::Masks;
-  lit.accuracy = coarse_accuracy;
-  lit.has_half_widths = false;
-  Diagnostics twice; // the object was read before: its warnings are known
-  UMOV_ASSIGN(coarse, PoseLight::make(direct, lit, options, twice, cancel));
-  out.coarse.emplace(std::move(coarse));
-  return {};
-}
-
 } // namespace
 
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
@@ -97,10 +78,29 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
     out.masks.emplace(std::move(masks));
     out.light.model().take_masks_of(out.masks->model());
   }
-  UMOV_TRY(prepare_coarse(direct, request, out, options, cancel));
   UMOV_ASSIGN(between, prepare_between(scenario, request, out, options, cancel));
   out.between = std::move(between);
   return out;
+}
+
+Result<void> take_coarse(SearchedLight &ready, const Scenario &scenario,
+                         const InvertRequest &request, const JobOptions &options,
+                         const std::atomic<bool> *cancel) {
+  constexpr std::size_t few = 100; // facets that look different ways are lit within a microsecond
+  const LightModel &finer = (ready.masks ? *ready.masks : ready.light).model();
+  if (request.method == LightMethod::Rays || finer.facts().classes < few)
+    return {};
+  Scenario direct = scenario;
+  direct.light.bounces = 1; // what goes between surfaces has tables of its own
+  SignatureRequest lit;
+  lit.method = LightMethod::Masks;
+  lit.accuracy = 0.05; // of what its masks are worth, at worst
+  lit.is_for_search = true;
+  lit.has_half_widths = false;
+  Diagnostics twice; // the object was read before: its warnings are known
+  UMOV_ASSIGN(coarse, PoseLight::make(direct, lit, options, twice, cancel));
+  ready.coarse.emplace(std::move(coarse));
+  return {};
 }
 
 void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOptions &options,
@@ -244,9 +244,10 @@ ManifestInput::Light light_used(const SearchedLight &ready, const Scenario &scen
                                 Diagnostics &diagnostics) {
   const LightModel &model = ready.light.model();
   std::string device = model.device();
-  if (ready.masks && !device.starts_with("cpu"))
-    if (std::string rough = ready.masks->model().device(); rough.starts_with("cpu"))
-      device = std::move(rough);
+  for (const auto *of : {&ready.masks, &ready.coarse})
+    if (*of && !device.starts_with("cpu"))
+      if (std::string rough = (*of)->model().device(); rough.starts_with("cpu"))
+        device = std::move(rough);
   tell_of_device(device, diagnostics);
   const LightFacts &facts = model.facts();
   return {scenario.objects.front().name, name_of(facts.method), facts.visibility,

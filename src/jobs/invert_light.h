@@ -28,8 +28,8 @@ struct SearchedLight {
   PoseLight light;
   /// For the first fits, where `light` mends them or is exact and slow; else none.
   std::optional<PoseLight> masks;
-  /// For the search over all attitudes: coarse masks, and facets joined that look nearly the same
-  /// way. None of a body of few facets.
+  /// For the search over all attitudes, if `take_coarse` was asked: coarse masks, and facets joined
+  /// that look nearly the same way. None of a body of few facets or of parts that turn.
   std::optional<PoseLight> coarse = {};
   std::optional<FittedBetween> between = {}; ///< beside `light`, which is direct
   /// The light of `light` by material, where that is not quite known and can be taken apart.
@@ -50,6 +50,11 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
                                     const JobOptions &options, Diagnostics &diagnostics,
                                     const std::atomic<bool> *cancel = nullptr);
+/// Makes light for a search over all attitudes, which forgives a quarter of I at first and a
+/// twelfth in the end; without it masks serve.
+Result<void> take_coarse(SearchedLight &ready, const Scenario &scenario,
+                         const InvertRequest &request, const JobOptions &options,
+                         const std::atomic<bool> *cancel = nullptr);
 /// The light by material, as little of that as the request says is known; warns where it cannot be
 /// had, so that materials are taken for right.
 void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOptions &options,

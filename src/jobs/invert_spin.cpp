@@ -152,6 +152,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                               const SpinOptions &spin, const JobOptions &options,
                               const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics, monitor.cancel));
+  UMOV_TRY(take_coarse(ready, scenario, request, options, monitor.cancel));
   take_apart(ready, request, options, diagnostics, monitor.cancel);
   const ObservedCurve &curve = ready.observed.curve;
   const auto light = lighting_of(ready.light, options.threads, monitor);

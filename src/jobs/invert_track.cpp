@@ -179,6 +179,27 @@ Result<std::size_t> rows_until(const Epoch<Utc> &time, const ObservedLightCurve 
   return out;
 }
 
+/// Median light of each mode that a start has, over all epochs, as if it did not turn; of those
+/// that have any.
+Result<LightRange> expected_light(const CurveModel &model, const std::vector<TrackMode> &modes,
+                                  const TrackFrame &frame, unsigned threads) {
+  std::vector<Turning> turnings;
+  turnings.reserve(modes.size());
+  for (const TrackMode &mode : modes)
+    turnings.push_back({mode.turning.attitude, {}});
+  std::vector<double> each(modes.size());
+  const bool is_lit =
+      model.for_each(turnings, {}, threads, [&](std::size_t k, const ModelLight &light) {
+        each[k] = scale_of(modes[k], frame) * median_of({light.i.begin(), light.i.end()});
+      });
+  if (!is_lit)
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+  std::erase_if(each, [](double light) { return !(light > 0); });
+  if (each.empty())
+    return LightRange{};
+  return LightRange{std::ranges::min(each), std::ranges::max(each)};
+}
+
 } // namespace
 
 Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &request,
@@ -200,10 +221,13 @@ Result<Inversion> invert_track(const Scenario &scenario, const InvertRequest &re
   UMOV_ASSIGN(before, rows_until(now.time, ready.observed, request.observations.front()));
   ObservedLightCurve observed =
       part_of(ready.observed, before, ready.observed.geometry.size() - before);
-  UMOV_TRY(check_brightness(start, frame, now.median_i, inverse::median_of_i(observed.curve)));
   const bool is_quick = request.method == LightMethod::Masks;
   const auto light = is_quick ? followed_lighting(ready, options.threads, monitor)
                               : searched_lighting(ready, options.threads, monitor);
+  UMOV_TRY(check_brightness(start, frame, now.median_i, inverse::median_of_i(observed.curve), [&] {
+    return expected_light({observed.curve, light, observed.column, frame.parts}, now.modes, frame,
+                          options.threads);
+  }));
   AttitudeBank bank(now.modes, light, frame.bands, frame.parts,
                     {frame.errors, track.rate_noise * rad_per_deg, options.threads});
   bank.set_memory(now.memory);

@@ -80,6 +80,7 @@ LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &r
   out.source = source;
   out.mask_file = request.mask_file;
   out.has_half_widths = request.has_half_widths;
+  out.is_for_search = request.is_for_search;
   return out;
 }
 

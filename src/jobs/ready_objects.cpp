@@ -23,9 +23,11 @@ Result<const SearchedLight *> ReadyObjects::light(const std::string &path,
     auto light = prepare_light(one.scenario, request, options, told, cancel);
     one.told = std::move(told);
     if (light)
-      one.light = std::move(*light);
+      made = take_coarse(*light, one.scenario, request, options, cancel);
     else
       made = tl::unexpected(light.error());
+    if (made)
+      one.light = std::move(*light);
   }
   for (const Warning &warning : one.told.warnings())
     diagnostics.warn(warning.message, warning.where);

@@ -3,6 +3,7 @@
 
 #include "jobs/body_words.h"
 
+#include <functional>
 #include <umov/core/diagnostics.h>
 #include <umov/core/quantity.h>
 #include <umov/inverse/track.h>
@@ -49,10 +50,16 @@ Result<TrackStartFile> open_track_start(const std::string &path);
 /// what they are of.
 Result<TrackStart> read_track_start(const TrackStartFile &file, const TrackFrame &frame,
                                     double rate_sd, Diagnostics &diagnostics);
-/// BadInput where light of no unit is a thousand times as bright as that of the start, or as faint:
-/// it is in another unit then.
+/// Least and most of some lights.
+struct LightRange {
+  double least = 0, most = 0;
+};
+/// BadInput where light of no unit is a thousand times as bright as that of the start, or as faint,
+/// and as all that its modes lead to expect, which is asked for then alone: a body may have been
+/// dark so far. It is in another unit then.
 Result<void> check_brightness(const TrackStartFile &file, const TrackFrame &frame,
-                              double start_median, double median);
+                              double start_median, double median,
+                              const std::function<Result<LightRange>()> &expected);
 /// What a start says of the search before it, if a tracking with this verdict is one.
 std::string searched_by(const TrackStart &state, Verdict verdict);
 /// state.json: all digits, so that the next tracking goes on as if there had been no end.

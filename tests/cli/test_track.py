@@ -2,6 +2,7 @@
 answer of umov invert pose about the first half."""
 import json
 import math
+import re
 import shutil
 import signal
 import subprocess
@@ -323,12 +324,16 @@ def test_a_start_of_another_unit_is_refused(made, state):
                  if float(c[2]) > 0]
         large.append([",".join([*c[:2], f"{1e6 * float(c[2]):.6e}", f"{1e6 * float(c[3]):.6e}", *c[4:]]) for c in cells])
     (made / "mags.csv").write_text("\n".join(["time_utc,band,mag,mag_err", *mags]) + "\n")
+    small = [[",".join([*c[:2], f"{1e-6 * float(c[2]):.6e}", f"{1e-6 * float(c[3]):.6e}", *c[4:]]) for c in (line.split(",") for line in rows)]
+             for rows in epochs]
     write_epochs(made / "large.csv", head, large)
+    write_epochs(made / "small.csv", head, small)
     for start in ("pose", state):
         told = refused(made, start, observations="mags.csv")
         assert 'light in "relative"' in told and '"m2 / sr"' in told
-        told = refused(made, start, observations="large.csv")
-        assert "times as bright" in told and "one unit" in told
+        for name in ("large.csv", "small.csv"):
+            told = refused(made, start, observations=name)
+            assert "times as bright" in told and "one unit" in told
     modes = (made / state / "modes.ecsv").read_text()
     assert '"rate_x", unit: "deg / s"' in modes
     (made / "radians.ecsv").write_text(modes.replace('"rate_x", unit: "deg / s"', '"rate_x", unit: "rad / s"'))
@@ -398,3 +403,15 @@ def test_counts_are_followed(made, tmp_path):
     # Of hundreds of filters in one family the nearest has any weight: those that hold the truth together have nearly all.
     held = sum(mode["weight"] for mode in verdict["modes"] if apart(TRUTH, mode["q"]) < 4 * mode["sd_deg"])
     assert held > 0.95
+
+
+def test_a_body_that_was_dark_so_far_may_become_bright(made):
+    """A start whose data were noise says next to nothing of how bright the body is: its modes do."""
+    shutil.copytree(made / "pose", made / "dark")
+    path = made / "dark/modes.ecsv"
+    text, count = re.subn(r'("median_intensity": ")([^"]+)', lambda found: f"{found[1]}{1e-6 * float(found[2]):.9g}", path.read_text())
+    assert count == 1
+    path.write_text(text)
+    done = call(made, "invert", "track", "b1.csv", "--scenario", "fit.toml", "--start", "dark", *KNOWN, "-o", "bright")
+    assert done.code == 0, done.err
+    assert json.loads((made / "bright/verdict.json").read_text())["lost_utc"] is None

@@ -43,7 +43,8 @@ struct SignatureRequest {
   std::optional<std::uint64_t> seed;    ///< over the scenario's: of point sets and paths
   std::optional<BetweenMethod> between; ///< over the scenario's
   std::filesystem::path mask_file;      ///< LightOptions::mask_file
-  bool has_half_widths = true;          ///< LightOptions::has_half_widths
+  bool has_half_widths = true;          ///< as in LightOptions; false where nobody writes them
+  bool is_for_search = false;           ///< as in LightOptions
 };
 
 /// Rows of all poses into `sink`, block by block: memory does not grow with their number. The

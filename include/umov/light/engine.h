@@ -37,9 +37,9 @@ inline constexpr MaskQuality table_masks{62'000, 70, 70, 0.03};
 /// Typical error of I 0.1 %, up to half a minute and 300 MB.
 inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
 
-/// Typical error of I 1 %, with normals joined too: for who looks for attitudes.
+/// Typical error of I 1 %, with normals joined too: for who looks for attitudes
+/// (`LightOptions::is_for_search`).
 inline constexpr MaskQuality coarse_masks{16'000, 32, 32, 0};
-inline constexpr double coarse_accuracy = 0.1; ///< for which these will do
 
 /// The masks for a wanted typical error of I; nothing is mended by rays.
 MaskQuality masks_for(double accuracy);
@@ -59,7 +59,7 @@ struct EngineOptions {
   /// Part of `refine_above` that is asked of Q/I, where classes are traced.
   double q_part = 0.06;
   /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the
-  /// half-widths. 0: only those that are equal to 1e-5.
+  /// half-widths, if `tells_cluster_error`. 0: only those that are equal to 1e-5.
   double cluster_rad = 0;
   /// And by no more than that part of the slope of their narrowest lobe; 0: whatever the lobe.
   double cluster_of_lobe = 0;

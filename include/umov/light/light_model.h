@@ -42,6 +42,9 @@ struct LightOptions {
   /// Half-widths are asked for. If not, Masks tell those of sampling alone, and spare what it takes
   /// to know how much curved and joined facets are wrong by.
   bool has_half_widths = true;
+  /// Masks are coarse, and normals that lie close together beside their lobe are one: for a search
+  /// over all attitudes. Goes with Masks, whose accuracy is 1 % of I then.
+  bool is_for_search = false;
   /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
   /// Up to 64.
   std::size_t bounces = 1;

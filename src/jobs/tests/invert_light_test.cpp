@@ -16,8 +16,10 @@ class LightOfABall : public test::WhiteSphere {};
 
 TEST_F(LightOfABall, IsSummedFastForTheSearchAndExactAtTheEnd) {
   Diagnostics diagnostics;
-  const auto ready = prepare_light(scenario(), {}, {}, diagnostics);
+  auto ready = prepare_light(scenario(), {}, {}, diagnostics);
   ASSERT_TRUE(ready) << ready.error().text();
+  EXPECT_FALSE(ready->coarse);
+  ASSERT_TRUE(take_coarse(*ready, scenario(), {}, {}));
   EXPECT_EQ(ready->light.model().facts().method, LightMethod::Rays);
   ASSERT_TRUE(ready->masks);
   EXPECT_EQ(ready->masks->model().facts().method, LightMethod::Masks);

@@ -28,9 +28,7 @@ constexpr std::size_t poses_per_task_min = 64, poses_per_task_max = 16'384;
 } // namespace
 
 MaskQuality masks_for(double accuracy) {
-  MaskQuality out = accuracy >= coarse_accuracy ? coarse_masks
-                    : accuracy >= 0.004         ? fast_masks
-                                                : fine_masks;
+  MaskQuality out = accuracy >= 0.004 ? fast_masks : fine_masks;
   out.refine_above = 0;
   return out;
 }
@@ -176,12 +174,17 @@ std::vector<std::uint32_t> some_bands(std::size_t count) {
   return out;
 }
 
+/// Slope of the narrowest lobe; of a measured surface none is known.
+double width_of(const Surface &surface) {
+  return surface.material().measured ? 0 : surface.width();
+}
+
 /// How unlike the normals of each slot may be that are joined.
 std::vector<double> tolerances_of(const Scene &scene, const EngineOptions &options) {
   std::vector<double> out(2 * scene.mesh.groups.size(), options.cluster_rad);
   for (std::uint32_t slot = 0; slot < out.size() && options.cluster_of_lobe > 0; ++slot)
     out[slot] = std::min(options.cluster_rad,
-                         options.cluster_of_lobe * surface_of_slot(scene, slot).width());
+                         options.cluster_of_lobe * width_of(surface_of_slot(scene, slot)));
   return out;
 }
 
@@ -200,7 +203,8 @@ Engine::State::State(const Scene &of, const EngineOptions &with, const std::atom
                            options.cluster_rad > 0 && options.tells_cluster_error,
                            options.is_intensity_only);
   leave_if_stopped(cancel);
-  if (!(options.cluster_rad > 0)) // unlike normals are one there, whatever the lobe
+  // Else unlike normals are one there, whatever the lobe.
+  if (!(options.cluster_rad > 0) || options.cluster_of_lobe > 0)
     add_patches(elements, classes, plan, compiled, cancel);
   single = round_scene(compiled.data);
   leave_if_stopped(cancel);

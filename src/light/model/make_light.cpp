@@ -167,8 +167,7 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
     return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i, cancel,
                                        std::move(chains));
   return MasksLight::make(scene, std::move(joints), options, typical_i,
-                          !has_rays && has_widths ? &*unhidden : nullptr, begin, cancel,
-                          std::move(chains));
+                          has_widths ? &*unhidden : nullptr, begin, cancel, std::move(chains));
 }
 
 } // namespace

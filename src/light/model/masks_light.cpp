@@ -66,7 +66,8 @@ Result<void> MasksLight::prepare(std::chrono::steady_clock::time_point begin,
     with.masks.refine_above = left * options_.accuracy;
   }
   with.tells_cluster_error = options_.has_half_widths;
-  if (!is_auto && options_.accuracy >= coarse_accuracy) {
+  if (options_.is_for_search && !is_auto) {
+    with.masks = coarse_masks;
     with.cluster_rad = 0.1;
     with.cluster_of_lobe = 0.5;
   }
