@@ -109,12 +109,9 @@ Result<double> table_peak(const CurveModel &model, const CurveErrors &errors, do
   const std::size_t largest = level_of(table_error);
   const CurveLikelihood rough(model.curve(), of_kin(errors), epochs);
   const CurveLikelihood last(model.curve(), of_table(errors, table_levels[largest]), epochs);
-  auto fits = fit_turnings(
-      model, rough, spread_out(best, starts, apart), epochs,
-      {.iterations = 4, .difference_rad = 2e-3, .threads = threads, .tells_covariance = false});
-  fits = fit_turnings(
-      model, last, turnings_of(fits, kept), epochs,
-      {.iterations = 12, .difference_rad = 1e-3, .threads = threads, .tells_covariance = false});
+  auto fits = fit_turnings(model, rough, spread_out(best, starts, apart), epochs,
+                           on_the_way(4, 2e-3, threads));
+  fits = fit_turnings(model, last, turnings_of(fits, kept), epochs, on_the_way(12, 1e-3, threads));
   if (fits.empty())
     return tl::unexpected(stopped());
   const auto at = turnings_of(fits, kept);

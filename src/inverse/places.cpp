@@ -31,10 +31,7 @@ std::vector<TurningFit> fits_of(const FewSteps &round, const CurveModel &model,
   const auto epochs = epochs_out_of_step(curve.epochs.size(), round.epochs);
   const CurveLikelihood likelihood(curve, tempered(options.errors, curve, round.floor), epochs);
   return fit_turnings(model, likelihood, std::move(from), epochs,
-                      {.iterations = round.steps,
-                       .difference_rad = 2e-3,
-                       .threads = options.threads,
-                       .tells_covariance = false});
+                      on_the_way(round.steps, 2e-3, options.threads));
 }
 
 /// The kth of points that fill a ball evenly (additive recurrence of three numbers: Roberts 2018,
@@ -99,8 +96,7 @@ std::vector<Turning> cooled_places(const SearchModels &models, const std::vector
 std::vector<TurningFit> first_fits(const CurveModel &model, const CurveLikelihood &likelihood,
                                    const std::vector<Turning> &places, std::size_t most,
                                    unsigned threads) {
-  const FitPlan steps{
-      .iterations = 12, .difference_rad = 1e-3, .threads = threads, .tells_covariance = false};
+  const FitPlan steps = on_the_way(12, 1e-3, threads);
   auto out = fit_turnings(model, likelihood, places, {}, steps);
   if (model.parts().empty() || out.empty())
     return out;

@@ -440,8 +440,7 @@ double chi2_after_few_steps(const CurveModel &model, const std::vector<Turning> 
   const CurveLikelihood few(model.curve(), likelihood.errors(), some);
   const double all = static_cast<double>(likelihood.measurements()) /
                      static_cast<double>(std::max<std::size_t>(few.measurements(), 1));
-  inverse::FitPlan plan{
-      .iterations = 3, .difference_rad = 1e-3, .threads = threads, .tells_covariance = false};
+  inverse::FitPlan plan = inverse::on_the_way(3, 1e-3, threads);
   auto fits = inverse::fit_turnings(model, few, places, some, plan);
   if (!fits.empty() && fits.front().at.chi2 * all > far) {
     // A search forgives up to a quarter of I, which can be a hundred times the errors: a good place
@@ -498,9 +497,15 @@ std::vector<Turning> likely_spins(const CurveModel &first, const CurveErrors &er
   constexpr double far = 60; // chi-square of few epochs
   const auto some = epochs_of_first_steps(first);
   const CurveLikelihood few(first.curve(), errors, some);
-  const auto fits =
-      inverse::fit_turnings(first, few, std::move(starts), some,
-                            {Freedom::AttitudeAndRate, 12, 4, most, 1e-3, threads, true, false});
+  const auto fits = inverse::fit_turnings(first, few, std::move(starts), some,
+                                          {.freedom = Freedom::AttitudeAndRate,
+                                           .iterations = 12,
+                                           .cut_after = 4,
+                                           .kept = most,
+                                           .difference_rad = 1e-3,
+                                           .threads = threads,
+                                           .drops_hopeless = true,
+                                           .tells_covariance = false});
   std::size_t count = std::min(fits.size(), least);
   while (count < std::min(fits.size(), most) && fits[count].at.chi2 < fits[0].at.chi2 + far)
     ++count;

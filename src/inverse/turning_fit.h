@@ -52,6 +52,14 @@ struct FitPlan {
   bool tells_covariance = true;
 };
 
+/// A few steps of fixed attitudes on the way of a search, which goes on from their ends alone.
+inline FitPlan on_the_way(int steps, double difference_rad, unsigned threads) {
+  return {.iterations = steps,
+          .difference_rad = difference_rad,
+          .threads = threads,
+          .tells_covariance = false};
+}
+
 /// Levenberg-Marquardt (Marquardt 1963) of all starts side by side, scale and zero points
 /// eliminated in each residual (variable projection: Golub & Pereyra 1973); sorted by chi2, of
 /// those that came together the best. Empty if it was stopped.

@@ -23,6 +23,19 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
 
 namespace {
 
+/// The scenario without what goes between surfaces, which has tables of its own.
+Scenario without_between(Scenario scenario) {
+  scenario.light.bounces = 1;
+  return scenario;
+}
+
+/// Light of an object that was read before: its warnings are known.
+Result<PoseLight> light_again(const Scenario &scenario, const SignatureRequest &request,
+                              const JobOptions &options, const std::atomic<bool> *cancel) {
+  Diagnostics twice;
+  return PoseLight::make(scenario, request, options, twice, cancel);
+}
+
 /// Light between surfaces for a table: none of a body that is convex.
 Result<std::optional<FittedBetween>>
 prepare_between(const Scenario &scenario, const InvertRequest &request, const SearchedLight &direct,
@@ -40,8 +53,7 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
     rough.between = BetweenMethod::Chains;
   JobOptions by_processor = options; // cards trace no rays
   by_processor.device = {};
-  Diagnostics twice; // the object was read before: its warnings are known
-  UMOV_ASSIGN(whole, PoseLight::make(with, rough, by_processor, twice, cancel));
+  UMOV_ASSIGN(whole, light_again(with, rough, by_processor, cancel));
   if (rough.method == LightMethod::Masks && model.facts().method != LightMethod::Rays)
     whole.model().take_masks_of(direct.masks ? direct.masks->model() : model);
   const double sun_radius_rad = whole.sun_radius_rad();
@@ -55,8 +67,7 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
                                     const JobOptions &options, Diagnostics &diagnostics,
                                     const std::atomic<bool> *cancel) {
-  Scenario direct = scenario;
-  direct.light.bounces = 1; // what goes between surfaces has tables of its own
+  const Scenario direct = without_between(scenario);
   SignatureRequest lit;
   lit.method = request.method;
   // Light need not be known better than the model is.
@@ -73,8 +84,7 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
     rough.method = LightMethod::Masks;
     rough.accuracy = lit.accuracy;
     rough.has_half_widths = false;
-    Diagnostics twice;
-    UMOV_ASSIGN(masks, PoseLight::make(direct, rough, options, twice, cancel));
+    UMOV_ASSIGN(masks, light_again(direct, rough, options, cancel));
     out.masks.emplace(std::move(masks));
     out.light.model().take_masks_of(out.masks->model());
   }
@@ -90,15 +100,12 @@ Result<void> take_coarse(SearchedLight &ready, const Scenario &scenario,
   const LightModel &finer = (ready.masks ? *ready.masks : ready.light).model();
   if (request.method == LightMethod::Rays || finer.facts().classes < few)
     return {};
-  Scenario direct = scenario;
-  direct.light.bounces = 1; // what goes between surfaces has tables of its own
   SignatureRequest lit;
   lit.method = LightMethod::Masks;
   lit.accuracy = 0.05; // of what its masks are worth, at worst
   lit.is_for_search = true;
   lit.has_half_widths = false;
-  Diagnostics twice; // the object was read before: its warnings are known
-  UMOV_ASSIGN(coarse, PoseLight::make(direct, lit, options, twice, cancel));
+  UMOV_ASSIGN(coarse, light_again(without_between(scenario), lit, options, cancel));
   ready.coarse.emplace(std::move(coarse));
   return {};
 }

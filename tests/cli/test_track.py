@@ -314,20 +314,22 @@ def test_a_start_of_another_body_is_refused(made, state):
         assert "group body_my is of another material: paint_white" in told and "paint_black" in told
 
 
+def scaled(rows, by):
+    cells = [line.split(",") for line in rows]
+    return [",".join([*c[:2], f"{by * float(c[2]):.6e}", f"{by * float(c[3]):.6e}", *c[4:]]) for c in cells]
+
+
 def test_a_start_of_another_unit_is_refused(made, state):
-    """Fluxes of no unit beside magnitudes; fluxes that are a million times as large; rates in radians."""
+    """Fluxes of no unit beside magnitudes; fluxes that are a million times as large, and as small; rates in radians."""
     head, epochs = epochs_of(made / "b.csv")
-    mags, large = [], []
+    mags = []
     for rows in epochs:
         cells = [line.split(",") for line in rows]
         mags += [",".join([*c[:2], f"{10 - 2.5 * math.log10(float(c[2])):.4f}", f"{1.0857 * float(c[3]) / float(c[2]):.4f}"]) for c in cells
                  if float(c[2]) > 0]
-        large.append([",".join([*c[:2], f"{1e6 * float(c[2]):.6e}", f"{1e6 * float(c[3]):.6e}", *c[4:]]) for c in cells])
     (made / "mags.csv").write_text("\n".join(["time_utc,band,mag,mag_err", *mags]) + "\n")
-    small = [[",".join([*c[:2], f"{1e-6 * float(c[2]):.6e}", f"{1e-6 * float(c[3]):.6e}", *c[4:]]) for c in (line.split(",") for line in rows)]
-             for rows in epochs]
-    write_epochs(made / "large.csv", head, large)
-    write_epochs(made / "small.csv", head, small)
+    for name, by in (("large", 1e6), ("small", 1e-6)):
+        write_epochs(made / f"{name}.csv", head, [scaled(rows, by) for rows in epochs])
     for start in ("pose", state):
         told = refused(made, start, observations="mags.csv")
         assert 'light in "relative"' in told and '"m2 / sr"' in told
