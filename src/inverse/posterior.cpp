@@ -190,6 +190,14 @@ Turning draw_from(const Proposal &p, double span_s, std::uint64_t seed, std::uin
   return stepped(p.centre, p.root * z.head(n) * std::sqrt(tail / chi), span_s);
 }
 
+/// Draws of the first round, whose use is to tell covariances: fewer, where modes are few.
+std::size_t first_draws(const std::vector<PoseMode> &modes, std::size_t samples) {
+  constexpr std::size_t per_unknown = 40; // of each mode
+  const auto squared = static_cast<double>(modes.front().covariance.size());
+  const auto unknowns = static_cast<std::size_t>(std::lround(std::sqrt(squared)));
+  return std::min(samples, std::max(samples * 2 / 5, per_unknown * unknowns * modes.size()));
+}
+
 } // namespace
 
 Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
@@ -201,10 +209,11 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
   constexpr double enough = 100; // effective samples
   for (int round = 0; round < least || (round < most && out.effective < enough); ++round) {
     const auto mixture = mixture_of(modes, span);
+    const auto draws =
+        static_cast<double>(round == 0 ? first_draws(modes, options.samples) : options.samples);
     std::vector<Turning> drawn;
     for (std::size_t m = 0, k = 0; m < mixture.size(); ++m) {
-      const auto count = static_cast<std::size_t>(
-          std::ceil(mixture[m].weight * static_cast<double>(options.samples)));
+      const auto count = static_cast<std::size_t>(std::ceil(mixture[m].weight * draws));
       for (std::size_t j = 0; j < count; ++j, ++k)
         drawn.push_back(draw_from(mixture[m], span, options.seed,
                                   0x706f7300u + static_cast<std::uint32_t>(round), k));

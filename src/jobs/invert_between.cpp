@@ -12,8 +12,9 @@
 namespace umov::jobs {
 namespace {
 
-Result<const PoseLight *> whole_light(WholeLight &whole, const Scenario &scenario,
+Result<const PoseLight *> whole_light(const SearchedLight &ready, const Scenario &scenario,
                                       const JobOptions &options, const Monitor &monitor) {
+  WholeLight &whole = *ready.whole;
   const std::lock_guard lock(whole.making);
   if (!whole.light) {
     Scenario with = scenario;
@@ -24,8 +25,7 @@ Result<const PoseLight *> whole_light(WholeLight &whole, const Scenario &scenari
     rough.between = BetweenMethod::Paths; // of a dozen poses
     JobOptions by_processor = options;    // cards trace no rays
     by_processor.device = {};
-    Diagnostics twice; // the object was read before: its warnings are known
-    UMOV_ASSIGN(made, PoseLight::make(with, rough, by_processor, twice, monitor.cancel));
+    UMOV_ASSIGN(made, PoseLight::again(ready.light, with, rough, by_processor, monitor.cancel));
     whole.light.emplace(std::move(made));
   }
   return &*whole.light;
@@ -57,7 +57,7 @@ Result<double> share_between(const Scenario &scenario, const SearchedLight &read
   if (ready.between) { // its table has these poses by now
     is_lit = is_lit && whole_lighting(ready, options.threads, monitor)(poses, all);
   } else {
-    UMOV_ASSIGN(whole, whole_light(*ready.whole, scenario, options, monitor));
+    UMOV_ASSIGN(whole, whole_light(ready, scenario, options, monitor));
     is_lit = is_lit && whole->evaluate(poses, all, task);
   }
   if (!is_lit)

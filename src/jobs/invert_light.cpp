@@ -29,13 +29,6 @@ Scenario without_between(Scenario scenario) {
   return scenario;
 }
 
-/// Light of an object that was read before: its warnings are known.
-Result<PoseLight> light_again(const Scenario &scenario, const SignatureRequest &request,
-                              const JobOptions &options, const std::atomic<bool> *cancel) {
-  Diagnostics twice;
-  return PoseLight::make(scenario, request, options, twice, cancel);
-}
-
 /// Light between surfaces for a table: none of a body that is convex.
 Result<std::optional<FittedBetween>>
 prepare_between(const Scenario &scenario, const InvertRequest &request, const SearchedLight &direct,
@@ -53,7 +46,7 @@ prepare_between(const Scenario &scenario, const InvertRequest &request, const Se
     rough.between = BetweenMethod::Chains;
   JobOptions by_processor = options; // cards trace no rays
   by_processor.device = {};
-  UMOV_ASSIGN(whole, light_again(with, rough, by_processor, cancel));
+  UMOV_ASSIGN(whole, PoseLight::again(direct.light, with, rough, by_processor, cancel));
   if (rough.method == LightMethod::Masks && model.facts().method != LightMethod::Rays)
     whole.model().take_masks_of(direct.masks ? direct.masks->model() : model);
   const double sun_radius_rad = whole.sun_radius_rad();
@@ -84,7 +77,7 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
     rough.method = LightMethod::Masks;
     rough.accuracy = lit.accuracy;
     rough.has_half_widths = false;
-    UMOV_ASSIGN(masks, light_again(direct, rough, options, cancel));
+    UMOV_ASSIGN(masks, PoseLight::again(out.light, direct, rough, options, cancel));
     out.masks.emplace(std::move(masks));
     out.light.model().take_masks_of(out.masks->model());
   }
@@ -105,7 +98,8 @@ Result<void> take_coarse(SearchedLight &ready, const Scenario &scenario,
   lit.accuracy = 0.05; // of what its masks are worth, at worst
   lit.is_for_search = true;
   lit.has_half_widths = false;
-  UMOV_ASSIGN(coarse, light_again(without_between(scenario), lit, options, cancel));
+  UMOV_ASSIGN(coarse,
+              PoseLight::again(ready.light, without_between(scenario), lit, options, cancel));
   ready.coarse.emplace(std::move(coarse));
   return {};
 }

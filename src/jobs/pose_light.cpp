@@ -108,8 +108,6 @@ Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureReque
                                   const JobOptions &options, Diagnostics &diagnostics,
                                   const std::atomic<bool> *cancel, std::size_t poses_in_all) {
   UMOV_ASSIGN(source, source_of(request));
-  LightOptions light = light_asked_for(scenario, request, source, options);
-  light.poses_in_all = poses_in_all;
   UMOV_TRY(check_request(scenario, request));
   const bool is_sun = request.source == Source::Sun;
   UMOV_ASSIGN(object, load_object(scenario, 0,
@@ -118,16 +116,36 @@ Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureReque
                                    .turns_in_time = false,
                                    .cancel = cancel},
                                   diagnostics));
+  LightOptions light = light_asked_for(scenario, request, source, options);
+  light.poses_in_all = poses_in_all;
+  return of(object.scene, std::move(object.inputs), scenario, request, std::move(light),
+            diagnostics, cancel);
+}
+
+Result<PoseLight> PoseLight::again(const PoseLight &read, const Scenario &scenario,
+                                   const SignatureRequest &request, const JobOptions &options,
+                                   const std::atomic<bool> *cancel) {
+  UMOV_ASSIGN(source, source_of(request));
+  UMOV_TRY(check_request(scenario, request));
+  Diagnostics twice; // what there is to be told was told when it was read
+  return of(read.model().scene(), read.inputs(), scenario, request,
+            light_asked_for(scenario, request, source, options), twice, cancel);
+}
+
+Result<PoseLight> PoseLight::of(const Scene &scene, std::vector<InputFile> inputs,
+                                const Scenario &scenario, const SignatureRequest &request,
+                                LightOptions light, Diagnostics &diagnostics,
+                                const std::atomic<bool> *cancel) {
+  const bool is_sun = request.source == Source::Sun;
   auto state = std::make_unique<State>();
-  state->options = light;
-  state->inputs = std::move(object.inputs);
+  state->options = std::move(light);
+  state->inputs = std::move(inputs);
   state->sun_radius_rad = is_sun && scenario.has_solar_disk ? sun_radius_at_1au_rad : 0;
   state->parts.emplace(scenario.objects.front().parts, is_sun, scenario.file, diagnostics);
   // A body that is another one at every pose shares nothing, and a pose by itself is not worth it.
   if (!state->parts->joints().empty() || state->options.between == BetweenMethod::Auto)
     state->options.between = BetweenMethod::Paths;
-  UMOV_ASSIGN(model,
-              light_of(object.scene, state->parts->joints(), request, state->options, cancel));
+  UMOV_ASSIGN(model, light_of(scene, state->parts->joints(), request, state->options, cancel));
   state->model = std::move(model);
   return PoseLight(std::move(state));
 }

@@ -22,6 +22,11 @@ public:
                                 const JobOptions &options, Diagnostics &diagnostics,
                                 const std::atomic<bool> *cancel = nullptr,
                                 std::size_t poses_in_all = 0);
+  /// The object that `read` lights, lit another way: neither read nor told of once more. `scenario`
+  /// must name the same one. Errors as `make`.
+  static Result<PoseLight> again(const PoseLight &read, const Scenario &scenario,
+                                 const SignatureRequest &request, const JobOptions &options,
+                                 const std::atomic<bool> *cancel = nullptr);
   PoseLight(PoseLight &&) noexcept;
   PoseLight &operator=(PoseLight &&) noexcept;
   ~PoseLight();
@@ -44,6 +49,10 @@ public:
 
 private:
   struct State;
+  static Result<PoseLight> of(const Scene &scene, std::vector<InputFile> inputs,
+                              const Scenario &scenario, const SignatureRequest &request,
+                              LightOptions light, Diagnostics &diagnostics,
+                              const std::atomic<bool> *cancel);
   explicit PoseLight(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
