@@ -191,11 +191,10 @@ Turning draw_from(const Proposal &p, double span_s, std::uint64_t seed, std::uin
 }
 
 /// Draws of the first round, whose use is to tell covariances: fewer, where modes are few.
-std::size_t first_draws(const std::vector<PoseMode> &modes, std::size_t samples) {
+std::size_t first_draws(const std::vector<Proposal> &mixture, std::size_t samples) {
   constexpr std::size_t per_unknown = 40; // of each mode
-  const auto squared = static_cast<double>(modes.front().covariance.size());
-  const auto unknowns = static_cast<std::size_t>(std::lround(std::sqrt(squared)));
-  return std::min(samples, std::max(samples * 2 / 5, per_unknown * unknowns * modes.size()));
+  const auto unknowns = static_cast<std::size_t>(mixture.front().root.rows());
+  return std::min(samples, std::max(samples * 2 / 5, per_unknown * unknowns * mixture.size()));
 }
 
 } // namespace
@@ -210,7 +209,7 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
   for (int round = 0; round < least || (round < most && out.effective < enough); ++round) {
     const auto mixture = mixture_of(modes, span);
     const auto draws =
-        static_cast<double>(round == 0 ? first_draws(modes, options.samples) : options.samples);
+        static_cast<double>(round == 0 ? first_draws(mixture, options.samples) : options.samples);
     std::vector<Turning> drawn;
     for (std::size_t m = 0, k = 0; m < mixture.size(); ++m) {
       const auto count = static_cast<std::size_t>(std::ceil(mixture[m].weight * draws));
