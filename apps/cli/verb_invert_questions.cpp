@@ -32,7 +32,8 @@ void add_spin(CLI::App &invert, const Exit &exit_with) {
   verb->add_option("--period", spin->period_s,
                    "Of a whole turn [s], good to a few per cent; else from the periodogram")
       ->check(CLI::Range(1e-3, 1e7));
-  verb->add_flag("!--no-aliases", spin->has_aliases, "Try that period alone");
+  verb->add_flag_callback(
+      "--no-aliases", [spin] { spin->has_aliases = false; }, "Try that period alone");
   verb->add_option("--axis", *axis, "Of the body: x, y, z (either sense), or any")
       ->check(CLI::IsMember({"x", "y", "z", "any"}))
       ->capture_default_str();

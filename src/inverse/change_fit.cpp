@@ -16,10 +16,21 @@ using Eigen::VectorXd;
 constexpr int most_rounds = 60;
 constexpr double least_share = 1e-9; // of a step
 
+/// The last of the unknowns is one that the others leave something of: a pseudo-inverse has an
+/// error for one that is not, too.
+bool tells_last(const MatrixXd &normal) {
+  const Index last = normal.rows() - 1;
+  const VectorXd beside = normal.col(last).head(last);
+  const VectorXd by = algebra::pseudo_inverse(normal.topLeftCorner(last, last)) * beside;
+  constexpr double rounding = 1e-9;
+  return normal(last, last) - beside.dot(by) > rounding * normal(last, last);
+}
+
 ChangeFit solved(const Whitened &w, const VectorXd &prior_weight) {
   ChangeFit out;
   MatrixXd normal = algebra::gram(w.columns);
   normal.diagonal() += prior_weight;
+  out.is_told = normal.rows() < 2 || tells_last(normal);
   out.covariance = algebra::pseudo_inverse(normal);
   out.x = out.covariance * algebra::transposed_times(w.columns, w.right);
   out.chi2 = (w.right - w.columns * out.x).squaredNorm() +

@@ -20,6 +20,7 @@ struct ChangeFit {
   Eigen::MatrixXd covariance;
   double chi2 = 0;
   bool is_settled = true; ///< false: the best parts would leave a row without light
+  bool is_told = true;    ///< false: the others can do what the last member does
 };
 
 /// The curve without q and u of samples in which the object as it was is dark: no step may add or

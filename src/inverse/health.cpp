@@ -45,6 +45,8 @@ EndMember mixed(const std::vector<EndMember> &members, const VectorXd &x) {
 
 /// The last of the parts as a change: p = x_p / x_0, to first order in both.
 void put_change(const ChangeFit &fit, double chi2_without, HealthRow &row) {
+  if (!fit.is_told)
+    return;
   const Index last = fit.x.size() - 1;
   const double x0 = fit.x[0];
   row.change = fit.x[last] / x0;
@@ -75,7 +77,7 @@ void put_joint(const ChangeProblem &problem, const std::vector<EndMember> &membe
       out.joint_covariance.push_back(covariance(r, c));
 }
 
-/// Neither model nor data hold light: no change is seen, whatever it was.
+/// Model or data hold no light above the errors: no change is seen, whatever it was.
 Health dark(Health out, double chi2, const EndMember &before,
             const std::vector<LightChange> &changes) {
   out.chi2 = chi2;
@@ -103,7 +105,7 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
   Health out;
   const auto w = inverse::whitened(lit, errors, {before});
   out.measurements = w.measurements;
-  if (!(w.columns.col(0).dot(w.right) > 0))
+  if (!w.shows(0))
     return dark(std::move(out), w.right.squaredNorm(), before, changes);
   const ChangeFit unchanged = fit_changes(problem, members);
   out.chi2 = unchanged.chi2;

@@ -320,6 +320,7 @@ public:
   void tell(PoseAnswer &answer) const {
     answer.errors = error_.errors;
     answer.model_error = error_.found;
+    answer.is_model_error_more = error_.found > 0 && error_.found >= options_.largest_floor;
     answer.related = error_.related;
     answer.misfit = error_.found > 0 ? error_.chi2 : answer.chi2;
   }

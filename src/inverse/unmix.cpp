@@ -108,7 +108,8 @@ std::vector<std::size_t> groups_of(const Whitened &w, double scale,
   return group;
 }
 
-/// The best parts with none below 0, and the rows that they were found from.
+/// The best parts with none below 0, all 0 where no light stands out of the errors, and the rows
+/// that they were found from.
 struct Solved {
   Whitened rows;
   VectorXd parts;
@@ -117,6 +118,12 @@ struct Solved {
 Solved solve(const ObservedCurve &curve, const CurveErrors &errors,
              const std::vector<EndMember> &members) {
   Solved out{whitened(curve, errors, members), {}};
+  out.parts = VectorXd::Zero(out.rows.columns.cols());
+  bool is_dark = true;
+  for (Index k = 0; k < out.parts.size(); ++k)
+    is_dark = is_dark && !out.rows.shows(k);
+  if (is_dark)
+    return out;
   out.parts = nnls(out.rows.columns, out.rows.right);
   for (int round = 0; round < inverse::refinements && out.parts.sum() > 0; ++round) {
     const EndMember about = inverse::added_up(members, out.parts);

@@ -1,9 +1,11 @@
 #include "inverse/whitened.h"
 
+#include "inverse/count_likelihood.h"
 #include <umov/inverse/sample_errors.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace umov::inverse {
 
@@ -33,7 +35,62 @@ void whiten_band(MatrixXd &columns, VectorXd &right, const std::vector<Index> &r
   take(right);
 }
 
+ModelLight light_of(const EndMember &member) { return {member.i, member.q, member.u}; }
+
+/// Of the members the one of most light: nothing else is known of how much noise there is.
+const EndMember &brightest(const std::vector<EndMember> &members) {
+  return *std::ranges::max_element(
+      members, {}, [](const EndMember &m) { return std::accumulate(m.i.begin(), m.i.end(), 0.0); });
+}
+
+/// Rows of electrons.
+Whitened of_counts(const ObservedCurve &curve, const CurveErrors &errors,
+                   const std::vector<EndMember> &members, const EndMember *about,
+                   const EndMember *zeros) {
+  const CountLikelihood counts(curve, errors, median_of_i(curve), {});
+  // Variances of one light for all that is compared.
+  const EndMember *const known = zeros != nullptr ? zeros : about;
+  const EndMember &noisy = known != nullptr ? *known : brightest(members);
+  std::vector<PartLight> parts;
+  for (const EndMember &m : members)
+    parts.push_back({m.i, m.q, m.u, {}});
+  ModelLight model = light_of(noisy);
+  const double scale = known != nullptr ? 1 : counts.first_scale(model);
+  model.parts = parts;
+  const WhitenedCounts white = counts.whitened(model, scale);
+  const auto n = static_cast<Index>(counts.size());
+  Whitened out;
+  out.measurements = counts.size();
+  out.right = Eigen::Map<const VectorXd>(white.net.data(), n);
+  out.columns.resize(n, static_cast<Index>(members.size()));
+  for (std::size_t k = 0; k < members.size(); ++k)
+    out.columns.col(static_cast<Index>(k)) = Eigen::Map<const VectorXd>(white.parts[k].data(), n);
+  out.light.resize(counts.size());
+  std::iota(out.light.begin(), out.light.end(), Index{0});
+  std::vector<std::vector<Index>> rows(curve.bands.size());
+  std::vector<std::vector<double>> common(curve.bands.size());
+  for (const CountLikelihood::Set &set : counts.sets())
+    for (std::size_t k = set.begin; k < set.begin + set.size; ++k) {
+      rows[set.group].push_back(static_cast<Index>(k));
+      common[set.group].push_back(errors.zero_point_sd * scale * white.light[k]);
+    }
+  for (std::size_t b = 0; b < rows.size(); ++b)
+    whiten_band(out.columns, out.right, rows[b],
+                Eigen::Map<const VectorXd>(common[b].data(), static_cast<Index>(common[b].size())));
+  return out;
+}
+
 } // namespace
+
+bool Whitened::shows(Index member) const {
+  double along = 0, square = 0;
+  for (const Index row : light) {
+    along += columns(row, member) * right[row];
+    square += columns(row, member) * columns(row, member);
+  }
+  constexpr double sigmas = 3;
+  return along > sigmas * std::sqrt(square);
+}
 
 EndMember added_up(const std::vector<EndMember> &members, const VectorXd &parts) {
   const std::size_t size = members.front().i.size();
@@ -53,6 +110,8 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
                   const std::vector<EndMember> &members, const EndMember *about,
                   const EndMember *zeros) {
   errors.has_clouds = false; // a free gain per epoch would leave equations that 0 solves
+  if (!curve.counts.empty() && errors.has_polarization)
+    return of_counts(curve, errors, members, about, zeros);
   const auto n = static_cast<Index>(members.size());
   const double median = median_of_i(curve);
   Whitened out;
@@ -74,6 +133,7 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
       out.columns(row, k) = members[static_cast<std::size_t>(k)].i[at] / sd;
     out.right[row] = s.i / sd;
     rows[s.band].push_back(row);
+    out.light.push_back(row);
     const double moved = zeros != nullptr ? std::max(zeros->i[at], 0.0) : light;
     common[s.band].push_back(errors.zero_point_sd * moved / sd);
     ++row;

@@ -6,18 +6,25 @@
 
 namespace umov::inverse {
 
-/// Everything whitened: rows of I, then of Q - q I and U - u I.
+/// Everything whitened: rows of I, then of Q - q I and U - u I; or of electrons, where counts were
+/// measured and polarization is used.
 struct Whitened {
   Eigen::MatrixXd columns;
   Eigen::VectorXd right;
   std::size_t measurements = 0, left_out = 0;
+  std::vector<Eigen::Index> light; ///< rows that are linear in the light: of I, or of electrons
+  /// The light of a member stands out of the errors of those rows.
+  [[nodiscard]] bool shows(Eigen::Index member) const;
 };
 
-/// I and, where q and u were measured, Q - q I and U - u I: linear in the members. Such rows pull
-/// the scale down, since 0 solves those of q and u and noise of I tilts what a zero point moves.
-/// With the scaled light of a fit (`about`) they are those of a Gauss-Newton step from there: q and
-/// u themselves, which do not depend on the scale, and zero points of the light that was fitted;
-/// or of `zeros`, where chi-squares of different light are compared.
+/// Counts as they are: the electrons of each channel are linear in the members, whatever the body
+/// did between one analyser and the next. Their variances are those of `about`.
+///
+/// Else I and, where q and u were measured, Q - q I and U - u I: linear in the members. Such rows
+/// pull the scale down, since 0 solves those of q and u and noise of I tilts what a zero point
+/// moves. With the scaled light of a fit (`about`) they are those of a Gauss-Newton step from
+/// there: q and u themselves, which do not depend on the scale, and zero points of the light that
+/// was fitted; or of `zeros`, where chi-squares of different light are compared.
 Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
                   const std::vector<EndMember> &members, const EndMember *about = nullptr,
                   const EndMember *zeros = nullptr);

@@ -171,8 +171,7 @@ std::string text_of_steady(Asked asked, bool has_q) {
   std::string out = has_q ? "brightness and polarization do not change by more than their errors: "
                           : "the brightness does not change by more than its errors: ";
   if (asked == Asked::Attitude)
-    return out + (has_q ? "what they allow" : "what it allows") +
-           " is wide, and no single attitude of it is an answer";
+    return out + "a body that gives as much to all sides does as well, so no attitude is an answer";
   return out + (has_q ? "colours and the mean of q and u" : "colours") +
          " alone tell anything, since the scale is free";
 }

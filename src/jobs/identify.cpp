@@ -368,7 +368,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
                 {"fit", std::move(fit)}};
   out.page =
       inversion_page(fmt::format("Which object: {} at its best", printable(words.names[best])),
-                     out.tables[2].table, pose, out.summary + odds_of(words));
+                     out.tables[2].table, pose, out.verdict, out.summary + odds_of(words));
   out.inputs.insert(out.inputs.end(), observed.inputs.begin(), observed.inputs.end());
   out.seed = scenario.seed;
   return out;

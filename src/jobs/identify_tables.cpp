@@ -173,9 +173,7 @@ std::string summary_of(const IdentityWords &words) {
   out += fmt::format("{} {}. {} looked at, {} searched\n", none_of_these, chance(answer.none),
                      counted(words.names.size(), "object"), count);
   const PoseAnswer &fit = best_of(words).answer;
-  out += fmt::format("{}: chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g})\n",
-                     printable(best_name(words)), fit.chi2, dof_of(fit),
-                     chi2_probability(fit.chi2, dof_of(fit)));
+  out += printable(best_name(words)) + ": " + fit_words(fit.chi2, dof_of(fit)) + "\n";
   for (const std::string &note : words.notes)
     out += "- " + note + "\n";
   return out;

@@ -49,8 +49,8 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                 {"fit", fit_table(observed, model, answer)}};
   note_start(out.tables.front().table, body_words(ready.light.model().scene()), observed, answer,
              judgement);
-  out.page =
-      inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer, out.summary);
+  out.page = inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer,
+                            out.verdict, out.summary);
   out.inputs = observed.inputs;
   out.seed = scenario.seed;
   out.light = light_used(ready, scenario, diagnostics);

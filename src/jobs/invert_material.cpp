@@ -160,6 +160,10 @@ std::vector<std::string> notes_of(const std::vector<Row> &rows, const Unmixing &
   else if (verdict == Verdict::NoFit)
     out.emplace_back("no candidate and no mixture of them explains the data within their errors "
                      "and --floor: is the attitude right, the object, the rest of its materials?");
+  else if (members.size() < 2)
+    out.emplace_back(
+        "one candidate: that it explains the data is all that is told; name others for "
+        "what it is to be told from");
   else if (rows.size() < 2)
     out.emplace_back("these observations tell none of the candidates from the others: the group "
                      "gives too little light, or their light is alike");
@@ -167,6 +171,37 @@ std::vector<std::string> notes_of(const std::vector<Row> &rows, const Unmixing &
     out.push_back(fmt::format("no candidate alone explains the data (chi-square {:.4g}), a mixture "
                               "does: the group is of several, or of what is not among them",
                               chi2));
+  return out;
+}
+
+std::string in_percent(double part) { return fmt::format("{:.3g} %", 100 * part); }
+
+/// The first line: what it is, as far as that is told.
+std::string headline(const std::string &group, const std::string &object, Verdict verdict,
+                     const std::vector<Row> &rows) {
+  const std::string of = fmt::format("{}: {} of {}", name_of(verdict), group, object);
+  const Row &likeliest = *std::ranges::max_element(rows, {}, &Row::probability);
+  if (verdict == Verdict::Determined)
+    return of + " is " + likeliest.names;
+  if (verdict == Verdict::Ambiguous)
+    return fmt::format("{} is of several, or {} alone with {} of the probability", of,
+                       likeliest.names, in_percent(likeliest.probability));
+  return of;
+}
+
+/// A line of each row, for the page.
+std::string lines_of(const std::vector<Row> &rows, Verdict verdict) {
+  std::string out;
+  for (const Row &row : rows) {
+    if (verdict == Verdict::NoFit || verdict == Verdict::Undetermined)
+      break; // no row says anything
+    out += fmt::format("- {}: alone with {} of the probability", row.names,
+                       in_percent(row.probability));
+    out += std::isnan(row.unmixed.fraction) ? std::string("\n")
+                                            : fmt::format("; of a mixture {} +- {} of the area\n",
+                                                          in_percent(row.unmixed.fraction),
+                                                          in_percent(row.unmixed.fraction_err));
+  }
   return out;
 }
 
@@ -280,10 +315,9 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   const NullTest u = null_test_of(observed.curve, unmixed.fitted);
   note_null_test(u, notes);
   out.summary =
-      fmt::format("{}: {} of {}; one material alone: chi-square {:.4g}, a mixture {:.4g}, "
-                  "of {} measurements",
-                  name_of(out.verdict), material.group, scenario.objects.front().name, chi2,
-                  unmixed.chi2, unmixed.measurements);
+      headline(material.group, scenario.objects.front().name, out.verdict, rows) +
+      fmt::format("; one material alone: chi-square {:.4g}, a mixture {:.4g}, of {} measurements",
+                  chi2, unmixed.chi2, unmixed.measurements);
   out.summary += std::isnan(unmixed.condition)
                      ? std::string("\n")
                      : fmt::format("; condition {:.3g}\n", unmixed.condition);
@@ -297,7 +331,8 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
                 {"fit", fit_table(observed, unmixed.fitted, request.errors)}};
   out.page = material_page_of(
       fmt::format("What {} of {} is made of", material.group, scenario.objects.front().name),
-      out.tables[2].table, unmixed, members.front().name, of_first, out.summary);
+      out.tables[2].table, unmixed, members.front().name, of_first,
+      out.summary + lines_of(rows, out.verdict));
   out.inputs = observed.inputs;
   out.inputs.insert(out.inputs.end(), inputs.begin(), inputs.end());
   out.seed = scenario.seed;

@@ -104,9 +104,14 @@ std::vector<std::string> lines_of(const std::string &summary, const PoseAnswer &
 } // namespace
 
 std::string inversion_page(const std::string &title, const Table &fit, const PoseAnswer &answer,
-                           const std::string &summary) {
+                           Verdict verdict, const std::string &summary) {
   std::vector<PlotFigure> figures;
   add_data_figures(figures, fit);
+  // Of an object that is not in the data no attitude is probable.
+  if (verdict == Verdict::NoFit) {
+    const auto page = make_answer_page(title, figures, page_lines(summary));
+    return page ? *page : std::string();
+  }
   if (const std::vector<Quaternion> samples = equal_samples(answer); !samples.empty()) {
     figures.push_back(axes_figure(samples));
     add_corner(figures, answer, samples);

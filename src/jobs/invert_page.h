@@ -2,8 +2,8 @@
 // Private: the page of an answer about attitudes.
 
 #include <string>
-#include <umov/inverse/pose_search.h>
 #include <umov/io/table.h>
+#include <umov/jobs/invert.h>
 
 namespace umov::jobs {
 
@@ -11,6 +11,6 @@ namespace umov::jobs {
 /// attitude's errors hang together, and the summary's lines. `fit`: as of fit_table. Empty where
 /// this build makes none.
 std::string inversion_page(const std::string &title, const Table &fit, const PoseAnswer &answer,
-                           const std::string &summary);
+                           Verdict verdict, const std::string &summary);
 
 } // namespace umov::jobs

@@ -44,6 +44,11 @@ Result<std::vector<double>> periods_to_try(const ObservedCurve &curve, const Spi
                 "the curve tells no period: 12 brightnesses that change are needed, over more than "
                 "a turn. Give one with --period");
   const double span = curve.epochs.back().seconds;
+  if (!(span > 0))
+    return fail(
+        ErrorCode::BadInput,
+        "all is of one time, which tells nothing of a turn, whatever its period: umov invert "
+        "pose asks for the attitude");
   std::vector<double> out{base};
   if (spin.has_aliases)
     for (const double times : {2.0, 0.5, 4.0})
@@ -195,7 +200,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   note_start(out.tables.front().table, body_words(ready.light.model().scene()), ready.observed,
              answer.pose, judgement);
   out.page = inversion_page("Which spin: " + scenario.title, out.tables[4].table, answer.pose,
-                            out.summary);
+                            out.verdict, out.summary);
   out.inputs = ready.observed.inputs;
   out.seed = scenario.seed;
   out.light = light_used(ready, scenario, diagnostics);

@@ -92,6 +92,10 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
                 const std::vector<BodySymmetry> &symmetries);
 std::string json_of(const char *question, const PoseAnswer &answer, const Judgement &judgement,
                     const std::vector<BodySymmetry> &symmetries);
+/// How well the best fit does.
+std::string fit_words(double chi2, double dof);
+/// Two digits, or all of those before the point.
+std::string in_digits(double number);
 std::string summary_of(const PoseAnswer &answer, const Judgement &judgement);
 
 } // namespace umov::jobs

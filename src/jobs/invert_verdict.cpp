@@ -31,6 +31,24 @@ const char *name_of(Verdict verdict) {
   return "undetermined";
 }
 
+namespace {
+
+constexpr double far_deg = 10; // a single peak as wide as that is no attitude
+
+} // namespace
+
+std::string fit_words(double chi2, double dof) {
+  return dof > 0 ? fmt::format("chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g})",
+                               chi2, dof, chi2_probability(chi2, dof))
+                 : fmt::format("chi-square {:.4g} of no more numbers than there are unknowns: the "
+                               "fit is no test of itself",
+                               chi2);
+}
+
+std::string in_digits(double number) {
+  return number < 99.5 ? fmt::format("{:.2g}", number) : fmt::format("{:.0f}", number);
+}
+
 Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
   const double dof =
       static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
@@ -45,7 +63,6 @@ Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
     return Verdict::Undetermined;
   if (!(families.heaviest > 0.95))
     return Verdict::Ambiguous;
-  constexpr double far_deg = 10; // a single peak as wide as that is no attitude
   return families.spread_deg < far_deg ? Verdict::Determined : Verdict::Undetermined;
 }
 
@@ -69,15 +86,16 @@ void add_parts(const std::vector<PartKind> &parts, const BestLight &best, Judgem
 }
 
 /// A misfit far beyond the floor, which no material within its priors and no attitude explains.
-void doubt_model(double model_error, double floor, Judgement &out) {
+void doubt_model(const PoseAnswer &answer, double floor, Judgement &out) {
   constexpr double other = 2.5, none = 4, least = 0.005;
-  const double times = model_error / std::max(floor, least);
+  const double times = answer.model_error / std::max(floor, least);
   if (!(times > other))
     return;
-  out.notes.push_back(fmt::format("the best attitude misses the data by {:.2g} of I, the floor is "
-                                  "{:.2g}: materials or shape are others than these, and the "
+  out.notes.push_back(fmt::format("the best attitude misses the data by {}{:.2g} of I, the floor "
+                                  "is {:.2g}: materials or shape are others than these, and the "
                                   "attitude is not sure",
-                                  model_error, floor));
+                                  answer.is_model_error_more ? "more than " : "",
+                                  answer.model_error, floor));
   if (times > none)
     out.verdict = Verdict::NoFit;
   else if (out.verdict == Verdict::Determined)
@@ -93,6 +111,20 @@ void doubt_fit(const PoseAnswer &answer, const CurveErrors &errors, Judgement &o
                                   "{:.1g}): one that fits may have been passed by, or errors and "
                                   "--floor are too small, so this one is not sure",
                                   *chance));
+}
+
+/// Why no attitude is told though each number of the search is sound.
+void note_width(const PoseAnswer &answer, Judgement &out) {
+  if (out.verdict != Verdict::Undetermined || !answer.is_settled)
+    return;
+  if (answer.is_broad || answer.modes.empty())
+    out.notes.emplace_back(
+        "the attitudes that explain the data are no few peaks: set95.ecsv and samples.ecsv hold "
+        "them, modes.ecsv only where they lie closest");
+  else if (out.families.heaviest > 0.95 && !(out.families.spread_deg < far_deg))
+    out.notes.push_back(fmt::format("one attitude explains the data, but so do all within {} deg "
+                                    "of it: what would narrow them are other directions or bands",
+                                    in_digits(out.families.spread_deg)));
 }
 
 } // namespace
@@ -135,8 +167,9 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
   add_parts(model.parts(), best, out);
   out.notes = limits_of(curve, errors, Asked::Attitude);
-  doubt_model(answer.model_error, errors.floor, out);
+  doubt_model(answer, errors.floor, out);
   doubt_fit(answer, errors, out);
+  note_width(answer, out);
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
   note_null_test(out.null_test, out.notes);
@@ -257,12 +290,12 @@ std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
           ? std::string("no_fit: nothing is known of the attitude; the table has what misses the "
                         "data least\n")
           : fmt::format("{}: {}, twins of the body counted as one; the heaviest holds {:.3g} % of "
-                        "the probability, within {:.2g} deg (root mean square). 95 % set: {} % of "
+                        "the probability, within {} deg (root mean square). 95 % set: {} % of "
                         "all attitudes\n",
                         name_of(judgement.verdict), counted(families.count, "attitude"),
-                        100 * families.heaviest, families.spread_deg, percent(answer.share_of_so3));
-  out += fmt::format("chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g})", answer.chi2,
-                     dof, chi2_probability(answer.chi2, dof));
+                        100 * families.heaviest, in_digits(families.spread_deg),
+                        percent(answer.share_of_so3));
+  out += fit_words(answer.chi2, dof);
   if (judgement.verdict != Verdict::NoFit)
     out += axes_words(judgement);
   out += "\n";

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <map>
+#include <tuple>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <umov/io/ccsds.h>
@@ -65,7 +66,10 @@ private:
   Result<Site> site_of(const ObservationsFile &file, const ObservedRow &row);
   Result<void> add_epoch(std::span<const Placed> rows, ObservedLightCurve &out);
   [[nodiscard]] ObservedCount count_of(const Placed &placed, const ObservingGeometry &g) const;
-  void add_count(const Placed &placed, ObservedLightCurve &out) const;
+  std::size_t set_of(const Placed &placed, std::int64_t set) {
+    return sets_.try_emplace({placed.file, placed.band, set}, sets_.size()).first->second;
+  }
+  void add_count(const Placed &placed, ObservedLightCurve &out);
   [[nodiscard]] ObservedSample sample_of(const Placed &placed, const ObservingGeometry &g) const;
   void warn_of_rows(Diagnostics &diagnostics) const;
 
@@ -74,6 +78,8 @@ private:
   std::vector<PhotometricBand> colours_;
   std::map<std::string, Site> sites_;
   std::vector<Placed> rows_;
+  /// Sets of counts by file, band and their number there: each has one for the whole curve.
+  std::map<std::tuple<const ObservationsFile *, std::size_t, std::int64_t>, std::size_t> sets_;
   RowTally in_shadow_, below_horizon_, without_error_;
 };
 
@@ -177,16 +183,34 @@ ObservedCount CurveMaker::count_of(const Placed &placed, const ObservingGeometry
   return out;
 }
 
-void CurveMaker::add_count(const Placed &placed, ObservedLightCurve &out) const {
+void CurveMaker::add_count(const Placed &placed, ObservedLightCurve &out) {
   ObservedCount count = count_of(placed, out.geometry.back());
   count.epoch = out.curve.epochs.size() - 1;
+  count.set = set_of(placed, placed.count->set);
   const auto at = std::ranges::find(out.column, placed.band);
   count.band = static_cast<std::size_t>(at - out.column.begin());
   out.curve.counts.push_back(count);
 }
 
+/// Of one time and site a band has one row, of whatever file.
+Result<void> check_no_row_in_two_files(std::span<const Placed> rows) {
+  for (std::size_t b = 1; b < rows.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a)
+      if (rows[a].row != nullptr && rows[b].row != nullptr && rows[a].file != rows[b].file &&
+          rows[a].file->counts.empty() && rows[a].band == rows[b].band)
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("a second row for {} in band \"{}\"; the first is line {} of {}. One "
+                        "measurement per time, band and site was expected",
+                        to_iso(rows[b].time), printable(rows[b].row->band), rows[a].row->line,
+                        rows[a].file->path),
+            {rows[b].file->path, rows[b].row->line});
+  return {};
+}
+
 /// Rows of one time and site.
 Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCurve &out) {
+  UMOV_TRY(check_no_row_in_two_files(rows));
   UMOV_ASSIGN(track, track_of(orbit_, rows.front().site));
   const auto geometry = track.observe(rows.front().time);
   if (!geometry)
@@ -222,6 +246,8 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
       without_error_.add({&placed, 1});
     ObservedSample sample = sample_of(placed, *geometry);
     sample.epoch = curve.epochs.size() - 1;
+    if (row.set >= 0 && !placed.file->counts.empty())
+      sample.set = set_of(placed, row.set);
     const auto at = std::ranges::find(out.column, placed.band);
     sample.band = static_cast<std::size_t>(at - out.column.begin());
     curve.samples.push_back(sample);
@@ -229,10 +255,12 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
   return {};
 }
 
-/// Something is a measurement: above 0, or with an error.
+/// Something was seen: brightness above 0, or q and u where none was measured.
 bool has_light(const ObservedCurve &curve) {
-  return std::ranges::any_of(curve.samples, [](const ObservedSample &s) {
-    return (!std::isnan(s.i) && (s.i > 0 || s.i_sd > 0)) || !std::isnan(s.q);
+  const bool is_without_i =
+      std::ranges::all_of(curve.samples, [](const ObservedSample &s) { return std::isnan(s.i); });
+  return std::ranges::any_of(curve.samples, [&](const ObservedSample &s) {
+    return s.i > 0 || (is_without_i && !std::isnan(s.q));
   });
 }
 
@@ -291,10 +319,11 @@ Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
                 "site's horizon: do times, orbit and site belong together?",
                 {rows_.front().file->path});
   if (!has_light(out.curve))
-    return fail(ErrorCode::BadInput,
-                "no row has light: each I, flux or mag is 0 or less, without an error. Are units "
-                "and signs right?",
-                {rows_.front().file->path});
+    return fail(
+        ErrorCode::BadInput,
+        "no row has light above 0: nothing was seen of the object, or the sky that was taken "
+        "off is too bright. Are units and signs right?",
+        {rows_.front().file->path});
   return out;
 }
 
@@ -324,12 +353,19 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
   constexpr std::size_t largest = 1u << 30;
   for (const std::string &path : paths) {
     UMOV_ASSIGN(text, read_file(path, largest));
+    const std::string hash = sha256_hex(text);
+    if (const auto same = std::ranges::find(inputs, hash, &InputFile::sha256); same != inputs.end())
+      return fail(ErrorCode::BadInput,
+                  same->path == path
+                      ? "is named twice: a measurement counts once"
+                      : fmt::format("holds what {} holds: a measurement counts once", same->path),
+                  {path});
     UMOV_ASSIGN(file, ccsds::is_message(text) ? observations_of_tdm(text, path, diagnostics)
                       : is_counts_table(text) ? observations_of_counts(text, path, has_polarization,
                                                                        threads, diagnostics)
                                               : read_observations_text(text, path, diagnostics));
     out.push_back(std::move(file));
-    inputs.push_back({path, sha256_hex(text)});
+    inputs.push_back({path, hash});
   }
   return out;
 }

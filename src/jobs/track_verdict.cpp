@@ -150,10 +150,10 @@ std::string track_summary(const TrackStart &now, const TrackHistory &history,
   } else {
     const Vec3<Body> w = answer.modes.front().turning.rate_rad_s * (1 / rad_per_deg);
     out += fmt::format("; {}, twins of the body counted as one; the heaviest holds {:.3g} % of the "
-                       "probability, within {:.2g} deg (root mean square), and turns by ({:.3g}, "
+                       "probability, within {} deg (root mean square), and turns by ({:.3g}, "
                        "{:.3g}, {:.3g}) deg/s\n",
                        counted(families.count, "attitude"), 100 * families.heaviest,
-                       families.spread_deg, w.x, w.y, w.z);
+                       in_digits(families.spread_deg), w.x, w.y, w.z);
   }
   out += fmt::format("chi-square of what came {:.4g} of {} (chance {:.2g})\n", answer.chi2,
                      counted(answer.measurements, "number"), chance_of(answer));

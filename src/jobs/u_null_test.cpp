@@ -1,16 +1,85 @@
 #include "jobs/u_null_test.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <limits>
+#include <map>
+#include <optional>
+#include <umov/reduction/stokes_fit.h>
 
 namespace umov::jobs {
+namespace {
+
+using CountsOfSets = std::map<std::size_t, std::vector<const ObservedCount *>>;
+
+CountsOfSets sets_in_sequence(const ObservedCurve &curve) {
+  CountsOfSets out;
+  for (const ObservedCount &count : curve.counts)
+    if (count.set != no_set)
+      out[count.set].push_back(&count);
+  std::erase_if(out, [](const auto &set) {
+    return std::ranges::all_of(set.second, [&](const ObservedCount *count) {
+      return count->epoch == set.second.front()->epoch;
+    });
+  });
+  return out;
+}
+
+/// U/I that a reduction makes of the fitted light of a set's exposures, which is not that of one
+/// moment where the light changes between them; none where it tells none.
+std::optional<double> reduced_u(const std::vector<const ObservedCount *> &set,
+                                const EndMember &fitted, std::size_t bands) {
+  double net = 0, light = 0;
+  std::vector<ChannelDatum> data;
+  for (const ObservedCount *count : set) {
+    const std::size_t at = count->epoch * bands + count->band;
+    const double seen =
+        count->by_i * fitted.i[at] + count->by_q * fitted.q[at] + count->by_u * fitted.u[at];
+    net += count->net;
+    light += seen;
+    data.push_back({seen,
+                    count->sky,
+                    count->fixed_variance,
+                    count->excess2,
+                    {count->by_i, count->by_q, count->by_u, 0}});
+  }
+  if (!(net > 0 && light > 0))
+    return {};
+  for (ChannelDatum &one : data)
+    one.counts = one.sky + net / light * one.counts;
+  const auto fit = fit_stokes(data, 3);
+  if (!fit || !(fit->stokes[0] > 0))
+    return {};
+  return fit->stokes[2] / fit->stokes[0];
+}
+
+} // namespace
 
 NullTest null_test_of(const ObservedCurve &curve, const EndMember &fitted) {
+  if (fitted.i.empty())
+    return null_test(curve, std::vector<double>(curve.samples.size(), 0));
+  const CountsOfSets sets = sets_in_sequence(curve);
+  ObservedCurve seen = curve;
   std::vector<double> model(curve.samples.size(), 0);
-  for (std::size_t k = 0; k < model.size() && !fitted.i.empty(); ++k) {
-    const std::size_t at = curve.samples[k].epoch * curve.bands.size() + curve.samples[k].band;
+  for (std::size_t k = 0; k < model.size(); ++k) {
+    ObservedSample &sample = seen.samples[k];
+    const std::size_t at = sample.epoch * curve.bands.size() + sample.band;
     model[k] = fitted.i[at] > 0 ? fitted.u[at] / fitted.i[at] : 0;
+    const auto set = sets.find(sample.set);
+    if (set == sets.end())
+      continue;
+    const auto reduced = reduced_u(set->second, fitted, curve.bands.size());
+    if (!reduced) {
+      sample.u = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    // A model is as right about the change within a set as about anything: where that makes most
+    // of U, what is left of it says little of the instrument.
+    const double by_change = *reduced - model[k];
+    sample.cov_uu += by_change * by_change;
+    model[k] = *reduced;
   }
-  return null_test(curve, model);
+  return null_test(seen, model);
 }
 
 void note_null_test(const NullTest &u, std::vector<std::string> &notes, const std::string &whose) {

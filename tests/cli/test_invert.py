@@ -337,6 +337,41 @@ def test_a_curve_without_a_period_says_so(umov, scene, tmp_path):
     assert "tells no period" in done.err
 
 
+def test_one_time_tells_no_spin(umov, scene, tmp_path):
+    (tmp_path / "obs.csv").write_text("time_utc,band,I\n" + "".join(f"2018-01-21T05:12:00Z,nm:{nm},1\n" for nm in (425, 550, 650)))
+    done = umov("invert", "spin", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--period", "47")
+    assert done.code == 3 and "all is of one time" in done.err
+
+
+def test_a_measurement_counts_once(umov, scene, tmp_path):
+    rows = "".join(f"2018-01-21T05:{m}:00Z,nm:550,1,.1\n" for m in range(10, 15))
+    for name, text in (("a.csv", rows), ("same.csv", rows), ("more.csv", rows[-33:] + "2018-01-21T05:15:30Z,nm:550,1,.1\n")):
+        (tmp_path / name).write_text("time_utc,band,I,I_err\n" + text)
+    ask = ("--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--group", "body_my", "--candidates", "paint_white,paint_black")
+    assert "a.csv: is named twice" in umov("invert", "material", "a.csv", "a.csv", *ask).err
+    assert "same.csv: holds what a.csv holds" in umov("invert", "material", "a.csv", "same.csv", *ask).err
+    done = umov("invert", "material", "a.csv", "more.csv", *ask)
+    assert done.code == 3 and 'more.csv:2: a second row for 2018-01-21T05:14:00.000Z in band "nm:550"; the first is line 6 of a.csv' in done.err
+
+
+@pytest.mark.parametrize("question", [("pose", "--grid", "1000"), ("material", "--group", "body_my", "--candidates", "paint_white,paint_black"),
+                                      ("health", "--drift", "body_my=paint_black")])
+def test_nothing_above_the_sky_has_one_answer(umov, scene, tmp_path, question):
+    rows = "".join(f"2018-01-21T05:{m}:00Z,nm:550,-1,.1\n" for m in range(10, 15))
+    (tmp_path / "obs.csv").write_text("time_utc,band,I,I_err\n" + rows)
+    done = umov("invert", question[0], "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), *question[1:])
+    assert done.code == 3 and "no row has light above 0: nothing was seen of the object, or the sky that was taken off" in done.err
+
+
+def test_errors_beyond_all_light_tell_nothing(umov, scene, tmp_path):
+    rows = "".join(f"2018-01-21T05:{m}:00Z,nm:550,1e-13,1e-4,.1,.1,10,10\n" for m in range(10, 15))
+    (tmp_path / "obs.csv").write_text("# pol_frame: altaz\ntime_utc,band,I,I_err,q,u,q_err,u_err\n" + rows)
+    fit = scene(TRUTHS[0], "masks", "fit")
+    for words in (("material", "--group", "body_my", "--candidates", "paint_white,paint_black"), ("health", "--drift", "body_my=paint_black")):
+        done = umov("invert", words[0], "obs.csv", "--scenario", fit, *words[1:], "--json")
+        assert json.loads(done.out)["verdict"] == "undetermined"
+
+
 def test_the_material_of_a_group_is_told_from_others(umov, scene, tmp_path):
     q = TRUTHS[0]
     assert umov("run", scene(q, "rays", "truth"), "-q").code == 0

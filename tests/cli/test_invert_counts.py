@@ -6,8 +6,9 @@ import re
 import subprocess
 
 import pytest
+from astropy.table import Table
 
-from conftest import UMOV
+from conftest import ROOT, UMOV
 from test_invert import KNOWN, TRUTHS, apart, in_set, scene  # noqa: F401
 
 
@@ -153,3 +154,83 @@ def test_threads_are_heeded_where_counts_are_reduced(umov, record, tmp_path):
             break
     job.wait()
     assert most == 1
+
+
+WHEEL = """umov = 1
+title = "a rocket body that turns by nine degrees from one polarizer to the next"
+seed = 5
+[observer]
+lat_deg = 20.7083
+lon_deg = -156.2578
+alt_m = 3058
+[time]
+start = 2018-01-21T05:12:50Z
+stop = 2018-01-21T05:15:00Z
+only = { alt_min_deg = 20, sun_alt_max_deg = -6, sunlit = true }
+[[object]]
+name = "Agena"
+orbit = { file = "ROOT/data/tle/agena733.tle", norad = 733 }
+mesh = { file = "ROOT/data/mesh/agena.obj", unit = "m", up = "+Z", normals = "smooth" }
+attitude = { mode = "spin", axis = "+X", period_s = 20EPOCH }
+[object.materials]
+default = "paint_white"
+[bands]
+set = ["Bessell.V", "Bessell.I"]
+[telescope]
+aperture_m = 0.4
+obstruction = 0.35
+focal_length_m = 3.3
+throughput = 0.5
+[detector]
+model = "ccd"
+pixel_um = 13
+read_e = 10
+dark_e_s = 1
+well_e = 1e5
+gain_e_adu = 2
+[polarimeter]
+type = "polarizer_wheel"
+x_axis_deg = 0
+[atmosphere]
+scintillation = "none"
+[observation]
+bands = ["Bessell.V", "Bessell.I"]
+exposure_s = 0.02
+cadence_s = 0.5
+[output]
+dir = "obs"
+formats = ["ecsv"]
+pol_frame = "altaz"
+""".replace("ROOT", str(ROOT))
+
+
+def test_parts_and_changes_of_a_body_that_turns_between_analysers(umov, tmp_path):
+    """Sets that are reduced as of a body at rest make polarization of its turning: fits of them were 30,000 in chi-square off."""
+    (tmp_path / "wheel.toml").write_text(WHEEL.replace("EPOCH", ", epoch = 2018-01-21T05:09:00Z"))
+    assert umov("observe", "wheel.toml", "-q").code == 0
+    ask = ("obs/counts.ecsv", "--scenario", "wheel.toml", "--json")
+    done = umov("invert", "material", *ask, "--group", "tank_aluminium", "--candidates", "paint_white,aluminium,paint_black", "-o", "made_of")
+    assert done.code == 0, done.err
+    found = json.loads(done.out)
+    assert found["verdict"] == "determined"
+    white = next(row for row in found["materials"] if "paint_white" in row["materials"])
+    assert abs(white["fraction"] - 1) < 4 * white["fraction_err"] and white["fraction_err"] < 0.05
+    assert not found["u_null_test"]["flagged"]
+    # I alone is what no single analyser tells.
+    parts = Table.read(tmp_path / "made_of/parts.ecsv")
+    assert set(parts["measured"]) == {"I,q,u"} and len(set(parts["bands"])) == 3
+    assert "tank_aluminium of Agena is paint_white" in (tmp_path / "made_of/log.txt").read_text()
+    done = umov("invert", "health", *ask, "--drift", "tank_aluminium=paint_black")
+    assert done.code == 0, done.err
+    found = json.loads(done.out)
+    assert found["verdict"] == "determined" and abs(found["health"][0]["sigma"]) < 4
+    assert not found["u_null_test"]["flagged"]
+
+
+def test_the_epoch_that_is_assumed_is_the_scenarios(umov, tmp_path):
+    """Not the first row's, which would be another attitude."""
+    (tmp_path / "wheel.toml").write_text(WHEEL.replace("EPOCH", ""))
+    assert umov("observe", "wheel.toml", "-q").code == 0
+    done = umov("invert", "health", "obs/counts.ecsv", "--scenario", "wheel.toml", "--set", "time.start=2018-01-21T05:12:00Z", "--drift",
+                "tank_aluminium=paint_black")
+    assert "Set epoch = 2018-01-21T05:12:00.000Z" in done.err, done.err

@@ -18,6 +18,9 @@ struct ObservedEpoch {
   double flux_per_intensity = 1;  ///< what arrives of I here, up to a constant of the curve
 };
 
+/// Not of counts.
+inline constexpr std::size_t no_set = std::numeric_limits<std::size_t>::max();
+
 /// One band at one epoch. NaN: not measured.
 struct ObservedSample {
   std::size_t epoch = 0, band = 0;
@@ -29,6 +32,7 @@ struct ObservedSample {
   double q = std::numeric_limits<double>::quiet_NaN();
   double u = std::numeric_limits<double>::quiet_NaN();
   double cov_qq = 0, cov_uu = 0, cov_qu = 0;
+  std::size_t set = no_set; ///< of counts that it was reduced from
 };
 
 /// Electrons of one channel of one exposure: by_i I + by_q Q + by_u U of them are the object's in
@@ -42,6 +46,7 @@ struct ObservedCount {
   double scintillation = 0;   ///< relative standard deviation of the exposure's transparency
   bool has_own_pupil = false; ///< which is then not that of the exposure's other channels
   double by_i = 0, by_q = 0, by_u = 0;
+  std::size_t set = no_set; ///< those of one were reduced to a sample together
 };
 
 /// All that was measured of one object.

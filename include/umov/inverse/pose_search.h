@@ -56,15 +56,16 @@ struct AttitudeBall {
 
 /// What a curve says about the attitude.
 struct PoseAnswer {
-  std::vector<PoseMode> modes;     ///< heaviest first
-  std::vector<PoseSample> samples; ///< of the posterior
-  std::vector<AttitudeBall> set95; ///< their union holds 95 % of it
-  double share_of_so3 = 0;         ///< volume of that union in parts of all attitudes
-  double log_evidence = 0;         ///< over a prior that takes all attitudes alike
-  double chi2 = 0;                 ///< of the best one
-  CurveErrors errors;              ///< that it rests on
-  double model_error = 0;          ///< in parts of I, as the misfit says; 0: nobody asked the data
-  double related = 1;              ///< how many numbers are wrong together
+  std::vector<PoseMode> modes;      ///< heaviest first
+  std::vector<PoseSample> samples;  ///< of the posterior
+  std::vector<AttitudeBall> set95;  ///< their union holds 95 % of it
+  double share_of_so3 = 0;          ///< volume of that union in parts of all attitudes
+  double log_evidence = 0;          ///< over a prior that takes all attitudes alike
+  double chi2 = 0;                  ///< of the best one
+  CurveErrors errors;               ///< that it rests on
+  double model_error = 0;           ///< in parts of I, as the misfit says; 0: nobody asked the data
+  bool is_model_error_more = false; ///< than that, the largest that was asked for
+  double related = 1;               ///< how many numbers are wrong together
   double misfit = 0; ///< chi2 of the best if numbers were off by `model_error` each by itself
   std::size_t measurements = 0, unknowns = 0;
   /// The posterior is no few narrow peaks: its samples were followed from all attitudes on, and

@@ -29,6 +29,7 @@ struct ObservedRow {
   double cov_qq = std::numeric_limits<double>::quiet_NaN();
   double cov_uu = std::numeric_limits<double>::quiet_NaN();
   double cov_qu = 0;
+  std::int64_t set = -1; ///< of counts that it was reduced from; -1: the file does not say
   std::size_t line = 0;
 };
 

@@ -10,14 +10,14 @@
 namespace umov {
 namespace {
 
-constexpr std::size_t epochs = 40, channels = 4;
+constexpr std::size_t turns = 40, channels = 4;
 
 /// Light of a body that is turned by an angle: what is asked.
 struct Light {
   std::vector<double> i, q, u;
   explicit Light(double angle) {
-    for (std::size_t e = 0; e < epochs; ++e) {
-      const double x = static_cast<double>(e) / epochs;
+    for (std::size_t e = 0; e < turns; ++e) {
+      const double x = static_cast<double>(e) / turns;
       i.push_back(1 + 0.6 * std::sin(5 * x + angle));
       q.push_back(0.3 * i.back() * std::cos(3 * x + 2 * angle));
       u.push_back(0);
@@ -33,7 +33,7 @@ ObservedCurve exposures(double electrons, double read, std::uint64_t seed) {
   std::normal_distribution<double> normal;
   ObservedCurve out;
   out.bands = {"a"};
-  for (std::size_t e = 0; e < epochs; ++e) {
+  for (std::size_t e = 0; e < turns; ++e) {
     out.epochs.emplace_back();
     double net[channels];
     for (std::size_t c = 0; c < channels; ++c) {

@@ -104,6 +104,12 @@ Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics
   return {};
 }
 
+/// Of a spin or a tumble, which alone have one.
+Epoch<Utc> epoch_of(const AttitudeLaw &law) {
+  const auto *const tumble = std::get_if<TumbleLaw>(&law);
+  return tumble != nullptr ? tumble->epoch : std::get<SpinLaw>(law).epoch;
+}
+
 Result<void> load_attitude(const Named &of, const Mesh &mesh, const LoadOptions &options,
                            Diagnostics &diagnostics, LoadedObject &out) {
   const std::atomic<bool> *cancel = options.cancel;
@@ -126,13 +132,15 @@ Result<void> load_attitude(const Named &of, const Mesh &mesh, const LoadOptions 
                 "[object.attitude] has no \"epoch\", and there is no time.start, which it would be "
                 "else; when it has the attitude of `start` was expected. Add it.",
                 of.place("attitude"));
-  if (of.object.has_assumed_epoch)
+  if (of.object.has_assumed_epoch) {
+    const std::string begin = to_iso(epoch_of(*law)); // of the scenario, whose span may be another
     diagnostics.warn(
         fmt::format("attitude has no epoch: it turns from its start at time.start, {}, "
                     "and another start is another attitude. Set epoch = {} to keep "
                     "this one whatever the span",
-                    to_iso(of.scenario.time->start), to_iso(of.scenario.time->start)),
+                    begin, begin),
         of.place("attitude"));
+  }
   out.attitude = *law;
   return {};
 }

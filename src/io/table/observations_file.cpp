@@ -4,6 +4,7 @@
 #include "io/table/text_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,7 +18,7 @@ namespace {
 
 /// The columns that a file has of those that are understood; -1: none.
 struct ObservationColumns {
-  int time = -1, mjd = -1, band = -1, site = -1, name = -1, flags = -1, limit = -1;
+  int time = -1, mjd = -1, band = -1, site = -1, name = -1, flags = -1, limit = -1, set = -1;
   int flux = -1, flux_err = -1, mag = -1, mag_err = -1;
   int q = -1, u = -1, q_err = -1, u_err = -1, cov_qq = -1, cov_uu = -1, cov_qu = -1;
   double q_unit = 1, u_unit = 1; ///< 0.01 for per cent
@@ -87,8 +88,12 @@ double ObservationReader::scale_of(int column) const {
   if (column < 0)
     return 1;
   const auto unit = table_.units.find(table_.columns[static_cast<std::size_t>(column)]);
-  return unit != table_.units.end() && (unit->second == "%" || unit->second == "percent") ? 0.01
-                                                                                          : 1;
+  // As FITS writers put it, whose standard knows no sign for it (Pence et al. 2010, 4.3).
+  constexpr std::array per_cent = {"%",     "percent", "10**-2", "10**(-2)",
+                                   "10^-2", "10^(-2)", "0.01"};
+  return unit != table_.units.end() && std::ranges::find(per_cent, unit->second) != per_cent.end()
+             ? 0.01
+             : 1;
 }
 
 Result<ObservationColumns> ObservationReader::columns() const {
@@ -100,6 +105,7 @@ Result<ObservationColumns> ObservationReader::columns() const {
   c.name = find({"name", "object"});
   c.flags = find({"flags"});
   c.limit = find({"mag_limit"});
+  c.set = find({"set_id"});
   c.flux = find({"I", "I_obs", "flux"}); // above the air, where a table has both
   c.flux_err = find({"I_err", "flux_err"});
   c.mag = find({"mag"});
@@ -249,6 +255,8 @@ Result<std::optional<ObservedRow>> ObservationReader::row(const ObservationColum
   out.time = at;
   out.band = text(c.band, k);
   out.site = text(c.site, k);
+  if (const auto set = parse_number(text(c.set, k)); set && *set >= 0 && *set < 1e15)
+    out.set = static_cast<std::int64_t>(*set);
   if (has_flag(text(c.flags, k), "saturated")) {
     ++saturated_;
     return std::optional<ObservedRow>();
@@ -399,7 +407,11 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
     text = {};
   ObservationReader reader(text, file, table);
   if (table.columns.empty() || table.rows() == 0)
-    return fail(ErrorCode::BadInput, "no row of observations", {file});
+    return fail(
+        ErrorCode::BadInput,
+        "no row of observations: a line of names, as time_utc,band,flux,flux_err, and a row "
+        "for each measurement below it were expected",
+        {file});
   UMOV_ASSIGN(columns, reader.columns());
   UMOV_TRY(check_name(reader, columns, table.rows()));
   UMOV_TRY(check_polcconv(table, file));

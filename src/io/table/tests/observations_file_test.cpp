@@ -45,6 +45,17 @@ TEST(Observations, OfOurOwnTablesAreReadBack) {
   }
 }
 
+TEST(Observations, PerCentIsTakenAsFitsHasIt) {
+  Table table;
+  table.add("time_utc", "", "", std::vector<std::string>{"2018-01-21T05:10:00Z"});
+  table.add("q", "10**-2", "", std::vector<double>{3.0});
+  table.add("u", "10**-2", "", std::vector<double>{-1.0});
+  table.note("pol_frame", "equatorial");
+  const auto file = read(to_ecsv(table));
+  ASSERT_TRUE(file) << file.error().text();
+  EXPECT_DOUBLE_EQ(file->rows.front().q, 0.03);
+}
+
 TEST(Observations, GapsAreNotMeasured) {
   const auto file = read(std::string(stokes_head) + "2018-01-21T05:10:00Z,V,2,0.1,,,,\n"
                                                     "2018-01-21T05:10:10Z,V,,,0.1,0.2,0.01,0.01\n"
