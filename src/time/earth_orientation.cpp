@@ -79,8 +79,10 @@ constexpr double growth_most_s = 0.1;
 
 bool is_continuous(const Day &a, const Day &b) {
   constexpr double leap_seconds_since = 41317; // 1 January 1972
-  return a.mjd < leap_seconds_since ||
-         (std::abs(growth_s(a, b)) <= growth_most_s && std::abs(b.dut1_s - a.dut1_s) < 1.5);
+  constexpr double step_most_s = 0.25;         // of UTC before: a tenth, and what the day adds
+  const double change = std::abs(b.dut1_s - a.dut1_s);
+  return a.mjd < leap_seconds_since ? change <= step_most_s
+                                    : std::abs(growth_s(a, b)) <= growth_most_s && change < 1.5;
 }
 
 constexpr const char *expected_form =

@@ -8,8 +8,8 @@
 namespace umov {
 namespace {
 
-/// First line that is neither blank nor a comment.
-std::string_view first_line(std::string_view text) {
+/// The first line that is neither blank nor a comment; `text` goes on behind it.
+std::string_view take_line(std::string_view &text) {
   while (!text.empty()) {
     const std::size_t end = text.find_first_of("\r\n");
     const std::string_view line = trimmed(text.substr(0, end));
@@ -34,6 +34,11 @@ bool has_element_line(std::string_view text) {
     at = end == std::string_view::npos ? text.size() : end + 1;
   }
   return false;
+}
+
+bool is_first_of_a_set(std::string_view line) {
+  constexpr std::size_t shortest = 60; // of 69 columns, of which some cut the last ones off
+  return line.starts_with("1 ") && line.size() >= shortest;
 }
 
 using Reader = Result<void> (*)(std::string_view, const std::string &, const omm::Sink &);
@@ -75,7 +80,9 @@ Result<std::vector<ElementSet>> read_messages(Reader reader, omm::Metadata metad
 ElementsForm form_of_elements(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF"))
     text.remove_prefix(3);
-  const std::string_view line = first_line(text);
+  const std::string_view line = take_line(text);
+  if (is_first_of_a_set(take_line(text))) // whatever the name above it looks like
+    return ElementsForm::Tle;
   if (line.starts_with('<'))
     return ElementsForm::OmmXml;
   if (line.starts_with('{') || line.starts_with('['))
@@ -116,7 +123,8 @@ Result<std::vector<ElementSet>> read_elements(std::string_view text, const std::
   default:
     break;
   }
-  if (const std::string_view line = first_line(text); !line.starts_with("CCSDS_OMM_VERS"))
+  std::string_view from = text;
+  if (const std::string_view line = take_line(from); !line.starts_with("CCSDS_OMM_VERS"))
     return fail(ErrorCode::BadInput,
                 fmt::format("is a CCSDS message that begins with \"{}\"; orbits are read from TLE, "
                             "3LE and OMM",

@@ -89,7 +89,7 @@ TEST(UNullTest, PolarizationOfTheInstrumentIsSeenThroughAChange) {
     seen += found.is_flagged() ? 1 : 0;
     mean += found.u0 / nights;
   }
-  EXPECT_GE(seen, 45); // .005 is seven of its errors
+  EXPECT_GE(seen, 45);              // .005 is seven of its errors
   EXPECT_NEAR(mean, 0.005, 0.0006); // four of the mean's own
 }
 

@@ -111,6 +111,16 @@ TEST(Elements, OneSetInEveryFormIsTheSame) {
     expect_same(read_text(text)->front(), tle);
 }
 
+TEST(Elements, ANameThatLooksLikeAnotherFormIsAName) {
+  const std::string lines =
+      "1 25544U 98067A   18021.16666667  .00001264  00000-0  26392-4 0  9996\n"
+      "2 25544  51.6432 332.0000 0003457  31.2000 328.9000 15.54000000 95380\n";
+  for (const char *name : {"{ISS}", "[ISS]", "<ISS>", "CCSDS_ISS", "MEAN_MOTION, ISS"}) {
+    EXPECT_EQ(form_of_elements(name + std::string("\n") + lines), ElementsForm::Tle) << name;
+  }
+  EXPECT_EQ(form_of_elements("{\n\"A\": 1}"), ElementsForm::OmmJson);
+}
+
 TEST(Elements, TheBlueBooksExampleIsReadInBothForms) {
   const ElementSet kvn = read_sample("omm_bluebook.kvn")[0],
                    xml = read_sample("omm_bluebook.xml")[0];
