@@ -82,6 +82,21 @@ std::vector<CurveLikelihood::Place> CurveLikelihood::places() const {
   return out;
 }
 
+std::vector<CurveLikelihood::Number> CurveLikelihood::numbers() const {
+  std::vector<Number> out;
+  const std::size_t bands = bands_.size();
+  for (const Row &row : rows_) {
+    const std::size_t band = row.at % bands;
+    const Measured ratio = row.l_qq > 0 ? Measured::Polarization : Measured::Nothing;
+    out.push_back({row.weight > 0 ? Measured::Intensity : Measured::Nothing, band});
+    out.insert(out.end(), 2, {ratio, band});
+  }
+  if (counts_)
+    for (const auto &set : counts_->sets())
+      out.insert(out.end(), set.size, {Measured::Electrons, set.at % bands});
+  return out;
+}
+
 /// Weights of the rows: those of the data, less where the model itself is not sure.
 CurveLikelihood::Weighed CurveLikelihood::weigh_at(const ModelLight &model, double scale) const {
   Weighed out;

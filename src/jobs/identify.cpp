@@ -349,15 +349,17 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   PoseAnswer pose = answer.candidates[best].answer;
   pose.errors = errors;
   Table fit;
-  if (const SearchedLight *light = own.light(best)) {
-    const CurveModel model(curve, whole_lighting(*light, options.threads, monitor),
-                           own.columns(best));
+  Contributions contributions{{}, curve.bands};
+  const auto look = [&](const CurveModel &model) {
     fit = fit_table(observed, model, pose);
+    contributions.all = contributions_to(pose, model, 1);
+  };
+  if (const SearchedLight *light = own.light(best)) {
+    look(CurveModel(curve, whole_lighting(*light, options.threads, monitor), own.columns(best)));
     out.light = own.used(best);
   } else {
     UMOV_TRY(library.lend(best, curve, [&](const Signature &s, std::span<const std::size_t> c) {
-      const CurveModel model(curve, lighting_of(s, options.threads), {c.begin(), c.end()});
-      fit = fit_table(observed, model, pose);
+      look(CurveModel(curve, lighting_of(s, options.threads), {c.begin(), c.end()}));
     }));
   }
   out.verdict = words.verdict;
@@ -366,9 +368,9 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   out.tables = {{"identity", identity_table(words)},
                 {"modes", modes_table(pose, false)},
                 {"fit", std::move(fit)}};
-  out.page =
-      inversion_page(fmt::format("Which object: {} at its best", printable(words.names[best])),
-                     out.tables[2].table, pose, out.verdict, out.summary + odds_of(words));
+  out.page = inversion_page(
+      fmt::format("Which object: {} at its best", printable(words.names[best])),
+      out.tables[2].table, pose, out.verdict, contributions, out.summary + odds_of(words));
   out.inputs.insert(out.inputs.end(), observed.inputs.begin(), observed.inputs.end());
   out.seed = scenario.seed;
   return out;

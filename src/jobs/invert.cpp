@@ -46,11 +46,12 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                 {"set95", set_table(answer)},
                 {"samples", samples_table(answer, false)},
                 {"twins", twins_table(answer, symmetries)},
-                {"fit", fit_table(observed, model, answer)}};
+                {"fit", fit_table(observed, model, answer)},
+                {"contributions", contributions_table(judgement.contributions)}};
   note_start(out.tables.front().table, body_words(ready.light.model().scene()), observed, answer,
              judgement);
   out.page = inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer,
-                            out.verdict, out.summary);
+                            out.verdict, judgement.contributions, out.summary);
   out.inputs = observed.inputs;
   out.seed = scenario.seed;
   out.light = light_used(ready, scenario, diagnostics);
@@ -60,11 +61,9 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
 
 std::vector<NamedTable> no_pose_tables() {
   const PoseAnswer none;
-  return {{"modes", modes_table(none, false)},
-          {"set95", set_table(none)},
-          {"samples", samples_table(none, false)},
-          {"twins", twins_table(none, {})},
-          {"fit", fit_table({}, EndMember(), {})}};
+  return {{"modes", modes_table(none, false)},     {"set95", set_table(none)},
+          {"samples", samples_table(none, false)}, {"twins", twins_table(none, {})},
+          {"fit", fit_table({}, EndMember(), {})}, {"contributions", contributions_table({})}};
 }
 
 std::string text_of(const InvertRequest &request) {

@@ -104,7 +104,8 @@ std::vector<std::string> lines_of(const std::string &summary, const PoseAnswer &
 } // namespace
 
 std::string inversion_page(const std::string &title, const Table &fit, const PoseAnswer &answer,
-                           Verdict verdict, const std::string &summary) {
+                           Verdict verdict, const Contributions &contributions,
+                           const std::string &summary) {
   std::vector<PlotFigure> figures;
   add_data_figures(figures, fit);
   // Of an object that is not in the data no attitude is probable.
@@ -116,6 +117,8 @@ std::string inversion_page(const std::string &title, const Table &fit, const Pos
     figures.push_back(axes_figure(samples));
     add_corner(figures, answer, samples);
   }
+  if (!contributions.all.empty())
+    figures.push_back(contributions_figure(contributions));
   const auto page = make_answer_page(title, figures, lines_of(summary, answer));
   return page ? *page : std::string();
 }

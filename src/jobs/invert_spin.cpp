@@ -196,11 +196,12 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                 {"periods", periods_table(answer, periods)},
                 {"set95", set_table(answer.pose)},
                 {"samples", samples_table(answer.pose, true)},
-                {"fit", fit_table(ready.observed, model, answer.pose)}};
+                {"fit", fit_table(ready.observed, model, answer.pose)},
+                {"contributions", contributions_table(judgement.contributions)}};
   note_start(out.tables.front().table, body_words(ready.light.model().scene()), ready.observed,
              answer.pose, judgement);
   out.page = inversion_page("Which spin: " + scenario.title, out.tables[4].table, answer.pose,
-                            out.verdict, out.summary);
+                            out.verdict, judgement.contributions, out.summary);
   out.inputs = ready.observed.inputs;
   out.seed = scenario.seed;
   out.light = light_used(ready, scenario, diagnostics);

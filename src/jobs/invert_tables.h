@@ -2,6 +2,7 @@
 // Private: answers of an inversion as tables and words.
 
 #include "jobs/body_words.h"
+#include "jobs/contribution_words.h"
 
 #include <optional>
 #include <umov/inverse/unmix.h>
@@ -78,6 +79,7 @@ struct Judgement {
   Families families;
   std::array<double, 3> axis_spread_deg{};
   NullTest null_test;
+  Contributions contributions; ///< none where nothing fits
   std::vector<std::string> notes;
   std::vector<Parameter> nuisances;
   std::vector<double> fitted; ///< of those that are parts of the light, the last ones: [sd]

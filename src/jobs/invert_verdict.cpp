@@ -186,7 +186,9 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
     out.notes.emplace_back(fmt::format("the samples are worth {:.1f} of the posterior's own: too "
                                        "few to say how sure the attitude is",
                                        answer.effective));
-  if (out.verdict == Verdict::NoFit)
+  if (out.verdict != Verdict::NoFit)
+    out.contributions = {contributions_to(answer, model, 1), curve.bands};
+  else
     out.notes.emplace_back("no attitude explains the data within their errors and --floor: is it "
                            "this object, does it stand still, are its materials right?");
   return out;
@@ -233,6 +235,7 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   }
   out["modes"] = modes;
   put_symmetries_and_null_test(symmetries, judgement.null_test, out);
+  out["contributions"] = contributions_json(judgement.contributions);
   ordered_json unknowns = ordered_json::array();
   const std::size_t first = judgement.nuisances.size() - judgement.fitted.size();
   for (std::size_t k = 0; k < judgement.nuisances.size(); ++k) {

@@ -148,6 +148,14 @@ public:
   };
   /// All of them, in the order of `compare`.
   [[nodiscard]] std::vector<Place> places() const;
+  /// What a residual of `compare` is of.
+  enum class Measured { Nothing, Intensity, Polarization, Electrons };
+  struct Number {
+    Measured what = Measured::Nothing; ///< a prior, or what was not measured
+    std::size_t band = 0;
+  };
+  /// Of all of them, in order; those that stand behind these are priors.
+  [[nodiscard]] std::vector<Number> numbers() const;
   /// Numbers that were measured.
   [[nodiscard]] std::size_t measurements() const { return measurements_; }
   /// What data and model may be off by.

@@ -11,13 +11,13 @@
 namespace umov {
 namespace {
 
-constexpr std::size_t exposures = 160, analysers = 4;
+constexpr std::size_t steps = 160, analysers = 4;
 
 /// Metal that glints and paint that does not: light of a body that turns by a glint's width between
 /// one analyser and the next.
 std::vector<EndMember> metal_and_paint() {
   std::vector<EndMember> out{{"metal", {}, {}, {}}, {"paint", {}, {}, {}}};
-  for (std::size_t e = 0; e < exposures; ++e) {
+  for (std::size_t e = 0; e < steps; ++e) {
     const double x = static_cast<double>(e);
     const double glint = std::exp(6 * (std::cos(0.7 * x) - 1));
     out[0].i.push_back(0.2 + 3 * glint);
@@ -51,8 +51,8 @@ ObservedCurve in_sequence(double metal, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   ObservedCurve out;
   out.bands = {"a"};
-  out.epochs.resize(exposures);
-  for (std::size_t e = 0; e < exposures; ++e) {
+  out.epochs.resize(steps);
+  for (std::size_t e = 0; e < steps; ++e) {
     const double twice = static_cast<double>(e % analysers) * pi / 2;
     ObservedCount one;
     one.epoch = e;
@@ -65,7 +65,7 @@ ObservedCurve in_sequence(double metal, std::uint64_t seed) {
     one.net = static_cast<double>(std::poisson_distribution<int>(mean)(random));
     out.counts.push_back(one);
   }
-  for (std::size_t first = 0; first < exposures; first += analysers)
+  for (std::size_t first = 0; first < steps; first += analysers)
     out.samples.push_back(reduced(out.counts, first, electrons));
   return out;
 }
@@ -90,7 +90,7 @@ TEST(CountFit, PartsComeBackWithinTheirErrorsWhateverTheBodyDidBetweenAnalysers)
     sum += pull;
     square += pull * pull;
     chi2 += found.chi2 / nights;
-    EXPECT_EQ(found.measurements, exposures);
+    EXPECT_EQ(found.measurements, steps);
     curve.counts.clear();
     const Unmixing of_sets = unmix(curve, errors_of_noise_alone(), metal_and_paint());
     reduced_off += (of_sets.groups[0].fraction - truth) / of_sets.groups[0].fraction_err / nights;
@@ -101,7 +101,7 @@ TEST(CountFit, PartsComeBackWithinTheirErrorsWhateverTheBodyDidBetweenAnalysers)
   EXPECT_NEAR(sum / nights, 0, 0.52);
   EXPECT_NEAR(square / nights, 1, 0.73);
   // Chi-square of 158 degrees of freedom: sqrt(2 * 158 / 60) = 2.3.
-  EXPECT_NEAR(chi2, exposures - 2., 9.2);
+  EXPECT_NEAR(chi2, steps - 2., 9.2);
   EXPECT_GT(std::abs(reduced_off), 10); // as sets they say something else
 }
 
@@ -132,7 +132,7 @@ TEST(CountFit, LightBelowItsErrorsTellsNeitherPartsNorChanges) {
   const Health found =
       check_health(curve, errors_of_noise_alone(), members[0], {{"x", members[1], 1, 0}}, {});
   EXPECT_EQ(found.rows.front().change_err, 0);
-  EXPECT_LT(found.chi2, exposures);
+  EXPECT_LT(found.chi2, steps);
 }
 
 TEST(CountFit, AChangeThatTheScaleAloneExplainsIsNotSeen) {
