@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <umov/core/text.h>
 #include <umov/jobs/plan.h>
 
@@ -12,6 +13,7 @@ namespace {
 
 struct PlanOptions {
   std::vector<std::string> alternatives;
+  std::string modes; ///< an answer whose attitudes are alternatives
   jobs::PlanRequest request;
 };
 
@@ -59,6 +61,11 @@ Result<std::vector<jobs::PlanAlternative>> alternatives_of(const PlanOptions &pl
     UMOV_ASSIGN(scenario, read_scenario(one.file.empty() ? asked.scenario : one.file, keys));
     out.push_back({one.name, std::move(scenario), 1});
   }
+  if (!plan.modes.empty()) {
+    UMOV_ASSIGN(scenario, read_scenario(asked.scenario, asked.keys()));
+    UMOV_ASSIGN(modes, jobs::alternatives_of_modes(scenario, plan.modes));
+    std::ranges::move(modes, std::back_inserter(out));
+  }
   return out;
 }
 
@@ -72,8 +79,11 @@ void add_invert_plan(CLI::App &invert, const Exit &exit_with) {
   auto plan = std::make_shared<PlanOptions>();
   verb->add_option("--alternative", plan->alternatives,
                    "NAME: the scenario as it is; NAME:KEY=VALUE: with a key changed (again for "
-                   "more keys); NAME:FILE.toml: the object of another scenario. Two or more")
-      ->required();
+                   "more keys); NAME:FILE.toml: the object of another scenario. Two or more");
+  verb->add_option(
+      "--modes", plan->modes,
+      "Answer of umov invert pose or spin, its folder or its modes.ecsv: each attitude "
+      "above 1 % of the probability is an alternative");
   const auto span = [&](const char *option, const char *key, const char *text) {
     verb->add_option_function<std::string>(
         option, [o, key](const std::string &time) { o->own_keys.push_back(key + time); }, text);

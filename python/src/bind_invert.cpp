@@ -74,16 +74,24 @@ jobs::Inversion health(const Scenario &scenario, const Request &request,
 /// `request`: how the model is known; its observations are none. `snr` 0: of the instrument.
 jobs::Inversion plan(const Scenario &scenario, const std::vector<std::string> &names,
                      const std::vector<const Scenario *> &scenarios,
-                     const std::vector<double> &priors, const Request &request, double snr,
-                     double sky_mag, const jobs::JobOptions &options, nb::handle watch) {
+                     const std::vector<double> &priors, const std::string &modes,
+                     const Request &request, double snr, double sky_mag,
+                     const jobs::JobOptions &options, nb::handle watch) {
   std::vector<jobs::PlanAlternative> alternatives;
   for (std::size_t k = 0; k < names.size(); ++k)
     alternatives.push_back({names[k], *scenarios[k], priors[k]});
   const jobs::PlanRequest asked{request.errors, request.method, snr, sky_mag,
                                 request.allow_old_elements};
-  return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
-    return jobs::plan_observations(scenario, alternatives, asked, options, monitor, diagnostics);
-  });
+  return answer(
+      watch,
+      [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<jobs::Inversion> {
+        if (!modes.empty()) {
+          UMOV_ASSIGN(open, jobs::alternatives_of_modes(scenario, modes));
+          alternatives.insert(alternatives.end(), open.begin(), open.end());
+        }
+        return jobs::plan_observations(scenario, alternatives, asked, options, monitor,
+                                       diagnostics);
+      });
 }
 
 jobs::Inversion identify(const Scenario &scenario, const Request &request,
@@ -173,8 +181,8 @@ void bind_invert(nb::module_ &m) {
         "options"_a, "watch"_a.none());
   m.def("invert_health", &health, "scenario"_a, "request"_a, "drifts"_a, "baseline"_a,
         "attitude_sd_deg"_a, "options"_a, "watch"_a.none());
-  m.def("invert_plan", &plan, "scenario"_a, "names"_a, "scenarios"_a, "priors"_a, "request"_a,
-        "snr"_a, "sky_mag"_a, "options"_a, "watch"_a.none());
+  m.def("invert_plan", &plan, "scenario"_a, "names"_a, "scenarios"_a, "priors"_a, "modes"_a,
+        "request"_a, "snr"_a, "sky_mag"_a, "options"_a, "watch"_a.none());
   m.def("identify", &identify, "scenario"_a, "request"_a, "library"_a, "objects"_a, "none_prior"_a,
         "options"_a, "watch"_a.none());
   m.def("build_library", &build_library, "scenarios"_a, "folder"_a, "cells"_a, "first"_a, "count"_a,

@@ -292,9 +292,8 @@ def test_a_plan(command, tmp_path):
 
 
 def test_changes_are_counted_from_a_baseline():
-    curve = umov.run(HST, set={"time.step_s": 30})
-    twice = [curve, curve]
-    found = umov.invert_health(twice, HST, drift={"array_front": "paint_white"}, baseline=twice)
+    nights = [umov.run(HST, set={"time.step_s": 30, "time.start": start}) for start in ("2018-01-21T05:00:00Z", "2018-01-21T05:00:15Z")]
+    found = umov.invert_health(nights, HST, drift={"array_front": "paint_white"}, baseline=nights)
     assert abs(found.tables["health"]["sigma"][0]) < 1e-6
 
 

@@ -10,7 +10,7 @@ _ARGUMENTS = {"alt": "alt_deg", "alternative": "alternatives", "phase": "phase_d
 #: The others. What is not here is none of ours: a name of a file may begin so.
 _SAME = frozenset((
     "accept allow-bad-checksum allow-old-elements aperture-fwhm band bands by-group calibration candidates cells change-per-s clouds "
-    "colour device drift exposure-s false-alarm floor frames gap-s grid haze-sd height-m knot-s largest-floor longest-s mag mag-max method nm "
+    "colour device drift exposure-s false-alarm floor frames gap-s grid haze-sd height-m knot-s largest-floor longest-s mag mag-max method modes nm "
     "norad object objects observer outliers peaks rate-noise rate-sd reflectance-sd samples scale-sd sd-p set shade shadow shortest-s side sky-mag sky-sd "
     "slope-sd sort start step-s stop sun sun-alt-max-deg threads time transparency-sd transparency-time-s up unit width-nm zero-point-sd").split())
 #: What several words of the command are together, and what is said of it alone.
@@ -31,8 +31,8 @@ _VERBS = {"bands list": "bands()", "calibrate": "calibrate", "exposure": "exposu
 _OF_A_SHELL = ("doctor", "material index", "mesh check")
 _VERB = re.compile(rf"(?<![\w./-])umov ({'|'.join([*_VERBS, *_OF_A_SHELL])})\b(?! -)")
 #: A file that adapters made of what was given.
-_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle|orbit\.json|modes\.ecsv|state\.json|(?:light|baseline)(?:_\d+)?\.ecsv)")
-_GIVEN = {"mesh.obj": "mesh of arrays", "orbit.tle": "orbit", "orbit.json": "orbit", "modes.ecsv": "start", "state.json": "start"}
+_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle|orbit\.json|modes\.ecsv|alternatives\.ecsv|state\.json|(?:light|baseline)(?:_\d+)?\.ecsv)")
+_GIVEN = {"mesh.obj": "mesh of arrays", "orbit.tle": "orbit", "orbit.json": "orbit", "modes.ecsv": "start", "alternatives.ecsv": "modes", "state.json": "start"}
 
 
 def _curve(file: str) -> str:

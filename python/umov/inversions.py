@@ -375,7 +375,23 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
                                               job_options(threads, cache, device=device), Watch(progress)))
 
 
-def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], *, start: AnyTime | None = None,
+@contextmanager
+def _modes_of(answer: Any) -> Iterator[str]:
+    """The name of a folder or table of modes; those of memory are one for as long as the job runs."""
+    if answer is None or isinstance(answer, (str, os.PathLike)):
+        yield "" if answer is None else path_text(answer, "modes")
+        return
+    if not isinstance(answer, Inversion) or "modes" not in answer.tables:
+        raise UsageError(f"modes is a {type(answer).__name__}; an answer of invert_pose or invert_spin, or the name of its folder or of its "
+                         "modes.ecsv was expected")
+    with tempfile.TemporaryDirectory(prefix="umov-") as folder:
+        file = pathlib.Path(folder) / "alternatives.ecsv"
+        answer.tables["modes"].write(file)
+        yield str(file)
+
+
+def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario] | None = None, *,
+                modes: Inversion | str | os.PathLike[str] | None = None, start: AnyTime | None = None,
                 stop: AnyTime | None = None, snr: float | None = None, sky_mag: float = 21.0,
                 priors: Mapping[str, float] | None = None, set: Mapping[str, Any] | None = None, fit: Fit | None = None,
                 threads: int = 0, cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
@@ -388,7 +404,11 @@ def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], 
         Orbit, site, time, bands, and the object that the alternatives change. Every step of its time is a row.
     alternatives
         By name, what may be the case: changes of the scenario's keys as a dictionary ({}: the scenario as it is), or
-        another scenario (a file, a Scenario, a Satellite), of which object and attitude are taken. Two to 32.
+        another scenario (a file, a Scenario, a Satellite), of which object and attitude are taken. With those of `modes`
+        two to 32.
+    modes
+        The answer of `invert_pose` or `invert_spin`, its folder or its modes.ecsv: each attitude above 1 % of the
+        probability is an alternative too, "mode 1" on, with its weight as chance before.
     start
         Begin of the span, in place of time.start.
     stop
@@ -428,7 +448,8 @@ def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], 
     >>> found.verdict, list(found.tables["plan"].names)[:3]
     ('determined', ['pass_id', 'first_utc', 'last_utc'])
     """
-    if not isinstance(alternatives, Mapping) or len(alternatives) < 2:
+    alternatives = {} if alternatives is None and modes is not None else alternatives
+    if not isinstance(alternatives, Mapping) or (len(alternatives) < 2 and modes is None):
         raise UsageError(f"alternatives is {alternatives!r}; two or more by name were expected, such as "
                          '{"new": {}, "painted": {"object.materials.array_back": "paint_white"}}')
     chances = dict(priors or {})
@@ -441,9 +462,10 @@ def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], 
     others = [Scenario(scenario, {**changes, **one}) if isinstance(one, Mapping) else Scenario(one) for one in alternatives.values()]
     ratio = 0.0 if snr is None else between(snr, "snr", 0.1, 1e6)
     weights = [between(chances.get(name, 1.0), "priors", 1e-9, 1e9) for name in alternatives]
-    return _inversion(_umov.invert_plan(asked._scenario, [str(name) for name in alternatives], [one._scenario for one in others],
-                                        weights, _request(None, fit), ratio, between(sky_mag, "sky_mag", -5, 40),
-                                        job_options(threads, cache, device=device), Watch(progress)))
+    with _modes_of(modes) as answer:
+        return _inversion(_umov.invert_plan(asked._scenario, [str(name) for name in alternatives], [one._scenario for one in others],
+                                            weights, answer, _request(None, fit), ratio, between(sky_mag, "sky_mag", -5, 40),
+                                            job_options(threads, cache, device=device), Watch(progress)))
 
 
 def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike[str], *,

@@ -170,6 +170,9 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   doubt_model(answer, errors.floor, out);
   doubt_fit(answer, errors, out);
   note_width(answer, out);
+  if (out.verdict == Verdict::Ambiguous && answer.modes.size() > 1)
+    out.notes.emplace_back(
+        "which passes would decide between these: umov invert plan with --modes");
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
   note_null_test(out.null_test, out.notes);

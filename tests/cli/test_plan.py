@@ -158,3 +158,49 @@ def test_bad_alternatives_are_told(umov, words, told):
 def test_a_span_without_a_pass_names_the_next_one(umov):
     done = umov("invert", "plan", "--scenario", HST, *SHORT, *PAIR, "--start", "2018-01-20T20:00:00Z", "--stop", "2018-01-20T20:30:00Z")
     assert done.code != 0 and "next pass is near 2018-01-2" in done.err
+
+
+def modes_text(rows, epoch=None):
+    """A table of modes as umov invert writes one, with rates [deg/s] where an epoch is given."""
+    size = "xyz" if epoch is None else ("x", "y", "z", "wx", "wy", "wz")
+    pairs = [f"cov_{a}{b}" for k, a in enumerate(size) for b in size[k:]]
+    names = ["weight", "qw", "qx", "qy", "qz", *(["rate_x", "rate_y", "rate_z"] if epoch else []), *pairs]
+    diagonal = [1e-6 if name[4:len(name) // 2 + 2] == name[len(name) // 2 + 2:] else 0 for name in pairs]
+    lines = [",".join(str(x) for x in [*row, *diagonal]) for row in rows]
+    return "\n".join([*([f"# epoch_utc: {epoch}"] if epoch else []), ",".join(names), *lines]) + "\n"
+
+
+@pytest.mark.parametrize("epoch", [None, "2018-01-21T05:08:00Z"])
+def test_modes_of_an_answer_are_alternatives(umov, tmp_path, epoch):
+    """As if each were named with its attitude, or its spin about an axis of the body; below 1 % none is."""
+    q = [[0.5, 0.5, -0.5, 0.5], [0.8, 0.0, 0.6, 0.0], [0.1, 0.7, 0.7, 0.1]]
+    rate = [[0, 0, 0.3], [0.2, 0, 0]]
+    rows = [[w, *q[k], *(rate[k % 2] if epoch else [])] for k, w in enumerate((0.6, 0.395, 0.005))]
+    (tmp_path / "modes.csv").write_text(modes_text(rows, epoch))
+    laws = []
+    for k in range(2):
+        still = f'{{mode="inertial",quaternion={q[k]}}}'
+        axis, turn = ("+Z", 0.3) if k == 0 else ("+X", 0.2)
+        laws.append(still if epoch is None else f'{{mode="spin",axis="{axis}",rate_deg_s={turn},epoch={epoch},start={still}}}')
+    named = [word for k, law in enumerate(laws) for word in ("--alternative", f"mode {k + 1}:object.attitude={law}")]
+    light = []
+    for words in (("--modes", "modes.csv"), named):
+        done = umov("invert", "plan", "--scenario", HST, *SHORT, *words, "-o", "plan", "--force", "--json")
+        assert done.code in (0, 4), done.err
+        assert json.loads(done.out)["alternatives"] == ["mode 1", "mode 2"]
+        light.append(Table.read(tmp_path / "plan/light.ecsv"))
+    for column in ("alternative", "time_utc", "band"):
+        assert list(light[0][column]) == list(light[1][column])
+    for column in light[0].columns:
+        if light[0][column].dtype.kind == "f":
+            assert np.asarray(light[0][column]) == pytest.approx(np.asarray(light[1][column]), rel=1e-9, abs=1e-18, nan_ok=True)
+
+
+def test_modes_that_leave_nothing_open_are_refused(umov, tmp_path):
+    (tmp_path / "modes.csv").write_text(modes_text([[1, 1, 0, 0, 0]]))
+    done = umov("invert", "plan", "--scenario", HST, *SHORT, "--modes", "modes.csv")
+    assert done.code == 3 and "modes.csv: 1 mode above 1 % of the probability: nothing is left to decide" in done.err
+    text = modes_text([[1, 1, 0, 0, 0, 0, 0, 1], [1, 0, 1, 0, 0, 0, 0, 1]], "2018-01-21T05:08:00Z")
+    (tmp_path / "modes.csv").write_text(text.split("\n", 1)[1])
+    done = umov("invert", "plan", "--scenario", HST, *SHORT, "--modes", "modes.csv")
+    assert done.code == 3 and "no epoch_utc" in done.err

@@ -11,9 +11,9 @@ struct Contribution {
   CurveLikelihood::Measured what{};
   std::size_t numbers = 0;
   double chi2 = 0; ///< their part of it
-  /// Their part of what is known of the unknowns: tr(C H_s) / n, of n unknowns that have the inverse
-  /// covariance C^-1 = sum H_s in all, H_s = J_s^T J_s theirs. The parts add up to 1, but for what
-  /// the priors of zero points and materials hold.
+  /// Their part of what is known of the unknowns: tr(C H_s) / n, of n unknowns that have the
+  /// inverse covariance C^-1 = sum H_s in all, H_s = J_s^T J_s theirs. The parts add up to 1, but
+  /// for what the priors of zero points and materials hold.
   double share = 0;
 };
 

@@ -14,6 +14,13 @@ struct PlanAlternative {
   double prior = 1;  ///< chance before, relative to the others
 };
 
+/// The attitudes that an answer of umov invert left open, "mode 1" on, each with its weight where
+/// that is above 1 %: the scenario's first object so turned. `answer`: its folder, or its
+/// modes.ecsv (attitudes body_from_gcrs; with rates it turns from epoch_utc of the header on).
+/// BadInput as `read_modes_text`, and where fewer than two are left.
+Result<std::vector<PlanAlternative>> alternatives_of_modes(const Scenario &scenario,
+                                                           const std::string &answer);
+
 /// What is asked, beside the alternatives.
 struct PlanRequest {
   CurveErrors errors; ///< of the model and the zero points, as the later fit will have them
