@@ -5,12 +5,13 @@
     PYTHONPATH=build/release/python venv/bin/python tools/oracles/evidence_dynesty.py observe
     PYTHONPATH=build/release/python venv/bin/python tools/oracles/evidence_dynesty.py check
     PYTHONPATH=build/release/python venv/bin/python tools/oracles/evidence_dynesty.py evidence > tests/data/evidence/dynesty.csv
+    PYTHONPATH=build/release/python venv/bin/python tools/oracles/evidence_dynesty.py importance > tests/data/evidence/importance.csv
 
 `observe` writes the observations: light of umov in a random attitude, wrong by photons, a floor and zero points. `evidence` integrates the likelihood of
 docs/theory/inverse.md, section 2, over all attitudes (three uniform numbers, Shoemake 1992) and prints ln of it, relative to a prior that takes all attitudes alike, and
-without the constants of the data alone, which section 2 leaves out. Likelihood, directions and the scattering plane are written anew here; the light of a pose and the range
-are umov's (`umov.Engine`, `umov.run`), the Sun is astropy's. Standard error tells two things more: the mean of the likelihood over 300,000 even attitudes, where enough
-of them fit, and what the integral over ln of the scale by quadrature has more than by Laplace's rule. `check` compares likelihoods with -2 ln of samples of umov.invert_pose, attitude by attitude.
+without the constants of the data alone, which section 2 leaves out. `importance` integrates the same by weighted draws: normal ones about 600 samples of umov.invert_pose and,
+a fifth of them, even over all attitudes, so that what those samples lack shows in the error. Likelihood, directions and the scattering plane are written anew here; the light of a pose and the range
+are umov's (`umov.Engine`, `umov.run`), the Sun is astropy's. Standard error tells what the integral over ln of the scale by quadrature has more than by Laplace's rule. `check` compares likelihoods with -2 ln of samples of umov.invert_pose, attitude by attitude.
 """
 import csv
 import datetime
@@ -30,7 +31,8 @@ CASES = {"bright": (30, "05:10", 12, 20, 13), "faint": (12, "05:12", 4, 30, 3)}
 HYPOTHESES = {"box": {}, "gold": {"object.materials.mx": "box_gold"}, "wider": {"object.mesh.file": str(HERE / "wider.obj")}}
 FLOOR, ZERO_POINT_SD = 0.01, 0.02
 UNIT = 3.1  # the scale is not known: fluxes are so many times what the body gives
-POINTS, SAMPLE, SEED, EVEN, AT_ONCE = 500, "rwalk", 1, 300_000, 20_000
+POINTS, SAMPLE, SEED = 500, "rwalk", 1
+DRAWS, AT_ONCE, WIDTH_DEG, EVEN = 24_000, 4000, {"bright": 1.5, "faint": 4}, 0.2
 
 
 def rotation(u):
@@ -156,12 +158,47 @@ def engine_of(hypothesis):
     return umov.Engine(SCENARIO, set=HYPOTHESES[hypothesis] or None, threads=1, cache=False)
 
 
-def even_mean(curve, engine):
-    """ln of the mean likelihood of even attitudes, and its error."""
-    rng = np.random.Generator(np.random.PCG64(SEED))
-    found = np.concatenate([curve.log_likelihood(curve.light(engine, rotation(rng.uniform(size=(AT_ONCE, 3))))) for _ in range(EVEN // AT_ONCE)])
-    part = np.exp(found - found.max())
-    return found.max() + np.log(part.mean()), part.std() / part.mean() / np.sqrt(len(part))
+def samples_of(case, hypothesis):
+    """umov's answer, its draws' quaternions (w, x, y, z), body from stars, and their weights."""
+    fit = umov.Fit(grid=2000, floor=FLOOR, zero_point_sd=ZERO_POINT_SD, slope_sd=0, reflectance_sd=0, haze_sd=0, largest_floor=0)
+    found = umov.invert_pose(HERE / f"{case}.csv", SCENARIO, set=HYPOTHESES[hypothesis] or None, fit=fit, threads=1, cache=False)
+    table = found.tables["samples"]
+    weight = np.array(table["weight"], float)
+    return found, np.column_stack([np.asarray(table[name], float) for name in ("qw", "qx", "qy", "qz")]), weight / weight.sum()
+
+
+def turns_of(quaternions):
+    """The other way round, as `rotation` has them."""
+    return np.swapaxes(rotation_of(*quaternions.T), -1, -2)
+
+
+def product(a, b):
+    (w, x, y, z), (W, X, Y, Z) = a.T, b.T
+    return np.column_stack([w * W - x * X - y * Y - z * Z, w * X + x * W + y * Z - z * Y, w * Y - x * Z + y * W + z * X, w * Z + x * Y - y * X + z * W])
+
+
+def importance(case, hypothesis):
+    """ln evidence and its error."""
+    rng = np.random.default_rng(SEED)
+    _, samples, weight = samples_of(case, hypothesis)
+    centres = samples[rng.choice(len(samples), 600, p=weight)]
+    width = np.radians(WIDTH_DEG[case])
+    vector = rng.normal(size=(DRAWS, 3)) * width
+    angle = np.linalg.norm(vector, axis=1)[:, None]
+    near = product(centres[rng.integers(len(centres), size=DRAWS)], np.hstack([np.cos(angle / 2), np.sin(angle / 2) * vector / angle]))
+    even = rng.normal(size=(DRAWS, 4))
+    draws = np.where(rng.uniform(size=(DRAWS, 1)) < EVEN, even / np.linalg.norm(even, axis=1)[:, None], near)
+    value = []
+    curve, engine = Curve(case), engine_of(hypothesis)
+    for k in range(0, DRAWS, AT_ONCE):
+        some = draws[k:k + AT_ONCE]
+        off = 2 * np.arccos(np.clip(np.abs(some @ centres.T), 0, 1))
+        # Over that of even attitudes: a volume of rotation vectors has (sin(a/2) / (a/2))^2 / (8 pi^2) of them.
+        density = np.exp(-off**2 / 2 / width**2) / (2 * np.pi * width**2)**1.5 * 8 * np.pi**2 / np.sinc(off / 2 / np.pi)**2
+        value.append(curve.log_likelihood(curve.light(engine, turns_of(some))) - np.log((1 - EVEN) * density.mean(1) + EVEN))
+    value = np.concatenate(value)
+    part = np.exp(value - value.max())
+    return value.max() + np.log(part.mean()), part.std() / part.mean() / np.sqrt(DRAWS)
 
 
 def nested(curve, engine):
@@ -186,20 +223,25 @@ def evidence(cases, hypotheses):
             engine = engine_of(hypothesis)
             value, error, more, calls = nested(curve, engine)
             print(f"{case},{hypothesis},{value:.4f},{error:.4f}", flush=True)
-            mean, of_mean = even_mean(curve, engine) if case == "faint" else (np.nan, np.nan)
-            print(f"{case} {hypothesis}: dynesty {value:.3f} +- {error:.3f} ({calls} likelihoods), even attitudes {mean:.3f} +- {of_mean:.3f}, quadrature over the scale {more:+.4f}", file=sys.stderr)
+            print(f"{case} {hypothesis}: {calls} likelihoods, quadrature over the scale {more:+.4f}", file=sys.stderr)
+
+
+def by_importance():
+    print(f"# tools/oracles/evidence_dynesty.py importance, numpy {np.__version__}, {DRAWS} draws, seed {SEED} (CC0)")
+    print("case,hypothesis,ln_evidence,ln_evidence_err")
+    for case in CASES:
+        for hypothesis in HYPOTHESES:
+            value, error = importance(case, hypothesis)
+            print(f"{case},{hypothesis},{value:.4f},{error:.4f}", flush=True)
 
 
 def check():
-    fit = umov.Fit(grid=2000, floor=FLOOR, zero_point_sd=ZERO_POINT_SD, slope_sd=0, reflectance_sd=0, haze_sd=0, largest_floor=0)
     for case in CASES:
         curve = Curve(case)
-        for hypothesis, change in HYPOTHESES.items():
-            found = umov.invert_pose(HERE / f"{case}.csv", SCENARIO, set=change or None, fit=fit, threads=1, cache=False)
-            turns = rotation_of(*(np.asarray(found.tables["samples"][name], float) for name in ("qw", "qx", "qy", "qz")))
-            ours = -2 * curve.log_likelihood(curve.light(engine_of(hypothesis), np.swapaxes(turns, -1, -2)))
+        for hypothesis in HYPOTHESES:
+            found, samples, weight = samples_of(case, hypothesis)
+            ours = -2 * curve.log_likelihood(curve.light(engine_of(hypothesis), turns_of(samples)))
             off = ours - np.asarray(found.tables["samples"]["minus_2_log"], float)
-            weight = np.asarray(found.tables["samples"]["weight"], float)
             print(f"{case} {hypothesis}: -2 ln likelihood of {len(off)} samples off by {np.sqrt(np.average(off**2, weights=weight)):.2g} (weighted rms), {np.abs(off).max():.2g} at most; "
                   f"ln evidence of umov {found.values['log_evidence']:.3f}, effective {found.values['effective_samples']:.0f} of {len(off)}, runs apart {found.values['evidences_apart']:.3f}, "
                   f"{len(found.values['modes'])} modes")
@@ -212,6 +254,8 @@ if __name__ == "__main__":
             observe(name)
     elif asked == "check":
         check()
+    elif asked == "importance":
+        by_importance()
     elif asked == "evidence":
         evidence(sys.argv[2].split(",") if len(sys.argv) > 2 else CASES, sys.argv[3].split(",") if len(sys.argv) > 3 else HYPOTHESES)
     else:
