@@ -50,6 +50,7 @@
 #include <umov/instrument/trail_slices.h>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/between_table.h>
+#include <umov/inverse/contributions.h>
 #include <umov/inverse/curve_model.h>
 #include <umov/inverse/design.h>
 #include <umov/inverse/direction_table.h>

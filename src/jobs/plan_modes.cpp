@@ -26,10 +26,11 @@ Result<Epoch<Utc>> epoch_of(const ModesFile &modes, const std::string &file) {
     return Epoch<Utc>{};
   const auto note = modes.notes.find("epoch_utc");
   if (note == modes.notes.end())
-    return fail(ErrorCode::BadInput,
-                "has rates, and its header no epoch_utc, from which on the body turned; modes.ecsv of an "
-                "inversion has it",
-                {file});
+    return fail(
+        ErrorCode::BadInput,
+        "has rates, and its header no epoch_utc, from which on the body turned; modes.ecsv of an "
+        "inversion has it",
+        {file});
   const auto epoch = utc_from_iso(note->second);
   return epoch ? epoch : fail(ErrorCode::BadInput, epoch.error().message, {file});
 }

@@ -150,6 +150,7 @@ public:
   [[nodiscard]] std::vector<Place> places() const;
   /// What a residual of `compare` is of.
   enum class Measured { Nothing, Intensity, Polarization, Electrons };
+  /// One of those residuals.
   struct Number {
     Measured what = Measured::Nothing; ///< a prior, or what was not measured
     std::size_t band = 0;
