@@ -179,7 +179,7 @@ std::string in_percent(double part) { return fmt::format("{:.3g} %", 100 * part)
 /// The first line: what it is, as far as that is told.
 std::string headline(const std::string &group, const std::string &object, Verdict verdict,
                      const std::vector<Row> &rows) {
-  const std::string of = fmt::format("{}: {} of {}", name_of(verdict), group, object);
+  std::string of = fmt::format("{}: {} of {}", name_of(verdict), group, object);
   const Row &likeliest = *std::ranges::max_element(rows, {}, &Row::probability);
   if (verdict == Verdict::Determined)
     return of + " is " + likeliest.names;
