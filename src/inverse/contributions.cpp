@@ -11,6 +11,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 struct Derived {
   std::vector<double> residuals;
@@ -51,7 +52,12 @@ std::vector<Contribution> contributions_to(const PoseAnswer &answer, const Curve
   const auto [residuals, jacobian] = derive(answer.modes.front(), model, likelihood, threads);
   if (residuals.empty())
     return {};
-  const MatrixXd covariance = algebra::pseudo_inverse(algebra::gram(jacobian));
+  const MatrixXd information = algebra::gram(jacobian);
+  const VectorXd values = algebra::singular_values(information);
+  constexpr double rounding = 1e-9;
+  if (!(values[values.size() - 1] > rounding * values[0]))
+    return {};
+  const MatrixXd covariance = algebra::pseudo_inverse(information);
   const auto unknowns = static_cast<double>(jacobian.cols());
   std::map<std::pair<std::size_t, CurveLikelihood::Measured>, Contribution> out;
   const auto numbers = likelihood.numbers();

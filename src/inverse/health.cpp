@@ -105,7 +105,7 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
   Health out;
   const auto w = inverse::whitened(lit, errors, {before});
   out.measurements = w.measurements;
-  if (!w.shows(0))
+  if (!w.shows.front())
     return dark(std::move(out), w.right.squaredNorm(), before, changes);
   const ChangeFit unchanged = fit_changes(problem, members);
   out.chi2 = unchanged.chi2;

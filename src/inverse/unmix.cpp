@@ -77,7 +77,7 @@ constexpr double sigmas = 3; // from which on something is seen
 std::vector<bool> seen(const Whitened &w, const VectorXd &parts) {
   std::vector<bool> out;
   for (Index k = 0; k < parts.size(); ++k)
-    out.push_back(w.columns.col(k).norm() * std::max(parts[k], parts.sum() - parts[k]) >= sigmas);
+    out.push_back(w.lengths[k] * std::max(parts[k], parts.sum() - parts[k]) >= sigmas);
   if (std::ranges::find(out, true) == out.end())
     out.assign(out.size(), true);
   return out;
@@ -119,10 +119,7 @@ Solved solve(const ObservedCurve &curve, const CurveErrors &errors,
              const std::vector<EndMember> &members) {
   Solved out{whitened(curve, errors, members), {}};
   out.parts = VectorXd::Zero(out.rows.columns.cols());
-  bool is_dark = true;
-  for (Index k = 0; k < out.parts.size(); ++k)
-    is_dark = is_dark && !out.rows.shows(k);
-  if (is_dark)
+  if (std::ranges::find(out.rows.shows, true) == out.rows.shows.end())
     return out;
   out.parts = nnls(out.rows.columns, out.rows.right);
   for (int round = 0; round < inverse::refinements && out.parts.sum() > 0; ++round) {

@@ -35,6 +35,20 @@ void whiten_band(MatrixXd &columns, VectorXd &right, const std::vector<Index> &r
   take(right);
 }
 
+/// Before zero points are whitened. `light`: rows that are linear in it.
+void put_shown(const std::vector<Index> &light, Whitened &out) {
+  constexpr double sigmas = 3;
+  out.lengths = out.columns.colwise().norm();
+  for (Index member = 0; member < out.columns.cols(); ++member) {
+    double along = 0, square = 0;
+    for (const Index row : light) {
+      along += out.columns(row, member) * out.right[row];
+      square += out.columns(row, member) * out.columns(row, member);
+    }
+    out.shows.push_back(along > sigmas * std::sqrt(square));
+  }
+}
+
 ModelLight light_of(const EndMember &member) { return {member.i, member.q, member.u}; }
 
 /// Of the members the one of most light: nothing else is known of how much noise there is.
@@ -65,8 +79,9 @@ Whitened of_counts(const ObservedCurve &curve, const CurveErrors &errors,
   out.columns.resize(n, static_cast<Index>(members.size()));
   for (std::size_t k = 0; k < members.size(); ++k)
     out.columns.col(static_cast<Index>(k)) = Eigen::Map<const VectorXd>(white.parts[k].data(), n);
-  out.light.resize(counts.size());
-  std::iota(out.light.begin(), out.light.end(), Index{0});
+  std::vector<Index> all(counts.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  put_shown(all, out);
   std::vector<std::vector<Index>> rows(curve.bands.size());
   std::vector<std::vector<double>> common(curve.bands.size());
   for (const CountLikelihood::Set &set : counts.sets())
@@ -81,16 +96,6 @@ Whitened of_counts(const ObservedCurve &curve, const CurveErrors &errors,
 }
 
 } // namespace
-
-bool Whitened::shows(Index member) const {
-  double along = 0, square = 0;
-  for (const Index row : light) {
-    along += columns(row, member) * right[row];
-    square += columns(row, member) * columns(row, member);
-  }
-  constexpr double sigmas = 3;
-  return along > sigmas * std::sqrt(square);
-}
 
 EndMember added_up(const std::vector<EndMember> &members, const VectorXd &parts) {
   const std::size_t size = members.front().i.size();
@@ -119,6 +124,7 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
   out.right = VectorXd::Zero(out.columns.rows());
   std::vector<std::vector<Index>> rows(curve.bands.size());
   std::vector<std::vector<double>> common(curve.bands.size());
+  std::vector<Index> light_rows;
   Index row = 0;
   for (const ObservedSample &s : curve.samples) {
     const std::size_t at = s.epoch * curve.bands.size() + s.band;
@@ -133,7 +139,7 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
       out.columns(row, k) = members[static_cast<std::size_t>(k)].i[at] / sd;
     out.right[row] = s.i / sd;
     rows[s.band].push_back(row);
-    out.light.push_back(row);
+    light_rows.push_back(row);
     const double moved = zeros != nullptr ? std::max(zeros->i[at], 0.0) : light;
     common[s.band].push_back(errors.zero_point_sd * moved / sd);
     ++row;
@@ -159,6 +165,7 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
   }
   out.columns.conservativeResize(row, n);
   out.right.conservativeResize(row);
+  put_shown(light_rows, out);
   for (std::size_t b = 0; b < rows.size(); ++b)
     whiten_band(out.columns, out.right, rows[b],
                 Eigen::Map<const VectorXd>(common[b].data(), static_cast<Index>(common[b].size())));

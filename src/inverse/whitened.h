@@ -12,9 +12,10 @@ struct Whitened {
   Eigen::MatrixXd columns;
   Eigen::VectorXd right;
   std::size_t measurements = 0, left_out = 0;
-  std::vector<Eigen::Index> light; ///< rows that are linear in the light: of I, or of electrons
-  /// The light of a member stands out of the errors of those rows.
-  [[nodiscard]] bool shows(Eigen::Index member) const;
+  /// Of each member: its light stands out of the errors of I, or of electrons. How well the zero
+  /// points are known is no part of that: whatever they are, light is light.
+  std::vector<bool> shows;
+  Eigen::VectorXd lengths; ///< of the columns, as they are without zero points
 };
 
 /// Counts as they are: the electrons of each channel are linear in the members, whatever the body

@@ -30,8 +30,8 @@ Table contributions_table(const Contributions &contributions) {
   out.add("band", "", "", std::move(band));
   out.add("measured", "", "I, q and u, or counts of analysers", std::move(measured));
   out.add("numbers", "", "that were measured", std::move(numbers));
-  out.add("chi2", "", "their part of that of the best attitude", std::move(chi2));
-  out.add("share", "", "of what is known of the best attitude; the rest is of priors",
+  out.add("chi2", "", "their part of that of the heaviest attitude", std::move(chi2));
+  out.add("share", "", "of what is known of the heaviest attitude; the rest is of priors",
           std::move(share));
   note_conventions(out);
   return out;
@@ -39,7 +39,7 @@ Table contributions_table(const Contributions &contributions) {
 
 PlotFigure contributions_figure(const Contributions &contributions) {
   PlotFigure out{"What each band and Stokes component contributed",
-                 "share of what is known of the best attitude [%]",
+                 "share of what is known of the heaviest attitude [%]",
                  "",
                  {}};
   double most = 0;

@@ -213,7 +213,7 @@ std::vector<std::string> limits_of(const ObservedCurve &curve, const CurveErrors
   }
   if (with_light == 0)
     out.emplace_back("no brightness was measured: q and u alone decide");
-  if (!has_q)
+  if (!has_q && curve.counts.empty()) // counts of analysers are fitted as they are
     out.emplace_back("no q and u were measured: brightness alone decides");
   if (curve.bands.size() == 1)
     out.emplace_back("one band: colours would tell materials, and so sides of the body, apart");

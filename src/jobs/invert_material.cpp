@@ -116,16 +116,29 @@ bool is_misfit(double chi2, double dof) {
   return dof > 0 && chi2_probability(chi2, dof) < unlikely && chi2 > 2 * dof;
 }
 
+/// The group is of several, or of what is not among them: no candidate alone does what a mixture
+/// does. `chi2`: of the best candidate alone, by the same errors.
+bool is_of_several(const std::vector<Row> &rows, const Unmixing &unmixed, double chi2,
+                   const CurveErrors &errors) {
+  if (rows.size() < 2)
+    return false;
+  if (is_misfit(chi2, static_cast<double>(unmixed.measurements) - 1))
+    return true;
+  constexpr double unlikely = 1e-6;
+  return !errors.has_clouds && !(errors.outlier_share > 0) &&
+         chi2_probability(chi2 - unmixed.chi2, static_cast<double>(rows.size()) - 1) < unlikely;
+}
+
 /// One candidate (or what cannot be told from it) holds all; several do, or a mixture of them; or
-/// none fits. `chi2`: of the best candidate alone.
-Verdict verdict_of(const std::vector<Row> &rows, const Unmixing &unmixed, double chi2) {
+/// none fits.
+Verdict verdict_of(const std::vector<Row> &rows, const Unmixing &unmixed, bool is_several) {
   const auto count = static_cast<double>(unmixed.measurements);
   if (is_misfit(unmixed.chi2, count - static_cast<double>(rows.size())))
     return Verdict::NoFit;
   if (rows.size() < 2 || !(unmixed.scale > 0))
     return Verdict::Undetermined;
   const bool is_one = std::ranges::any_of(rows, [](const Row &r) { return r.probability > 0.95; });
-  return is_one && !is_misfit(chi2, count - 1) ? Verdict::Determined : Verdict::Ambiguous;
+  return is_one && !is_several ? Verdict::Determined : Verdict::Ambiguous;
 }
 
 bool is_dark(const std::vector<EndMember> &members) {
@@ -136,7 +149,7 @@ bool is_dark(const std::vector<EndMember> &members) {
 
 /// What the answer rests on, and what it cannot tell.
 std::vector<std::string> notes_of(const std::vector<Row> &rows, const Unmixing &unmixed,
-                                  Verdict verdict, double chi2,
+                                  Verdict verdict, double chi2, bool is_several,
                                   const std::vector<EndMember> &members, bool has_clouds) {
   std::vector<std::string> out;
   if (unmixed.left_out > 0)
@@ -167,10 +180,12 @@ std::vector<std::string> notes_of(const std::vector<Row> &rows, const Unmixing &
   else if (rows.size() < 2)
     out.emplace_back("these observations tell none of the candidates from the others: the group "
                      "gives too little light, or their light is alike");
-  else if (is_misfit(chi2, static_cast<double>(unmixed.measurements) - 1))
-    out.push_back(fmt::format("no candidate alone explains the data (chi-square {:.4g}), a mixture "
-                              "does: the group is of several, or of what is not among them",
-                              chi2));
+  else if (is_several)
+    out.push_back(
+        fmt::format("no candidate alone explains the data as a mixture does (chi-square "
+                    "{:.4g} and {:.4g}): the group is of several, or of what is not among "
+                    "them",
+                    chi2, unmixed.chi2));
   return out;
 }
 
@@ -178,29 +193,33 @@ std::string in_percent(double part) { return fmt::format("{:.3g} %", 100 * part)
 
 /// The first line: what it is, as far as that is told.
 std::string headline(const std::string &group, const std::string &object, Verdict verdict,
-                     const std::vector<Row> &rows) {
+                     const std::vector<Row> &rows, bool is_several) {
   std::string of = fmt::format("{}: {} of {}", name_of(verdict), group, object);
   const Row &likeliest = *std::ranges::max_element(rows, {}, &Row::probability);
   if (verdict == Verdict::Determined)
     return of + " is " + likeliest.names;
+  if (verdict == Verdict::Ambiguous && is_several)
+    return of + " is of several";
   if (verdict == Verdict::Ambiguous)
-    return fmt::format("{} is of several, or {} alone with {} of the probability", of,
-                       likeliest.names, in_percent(likeliest.probability));
+    return fmt::format("{} may be {}, with {} of the probability", of, likeliest.names,
+                       in_percent(likeliest.probability));
   return of;
 }
 
 /// A line of each row, for the page.
-std::string lines_of(const std::vector<Row> &rows, Verdict verdict) {
+std::string lines_of(const std::vector<Row> &rows, Verdict verdict, bool is_several) {
   std::string out;
   for (const Row &row : rows) {
     if (verdict == Verdict::NoFit || verdict == Verdict::Undetermined)
       break; // no row says anything
-    out += fmt::format("- {}: alone with {} of the probability", row.names,
-                       in_percent(row.probability));
-    out += std::isnan(row.unmixed.fraction) ? std::string("\n")
-                                            : fmt::format("; of a mixture {} +- {} of the area\n",
-                                                          in_percent(row.unmixed.fraction),
-                                                          in_percent(row.unmixed.fraction_err));
+    const UnmixedGroup &part = row.unmixed;
+    out += "- " + row.names + ": ";
+    if (!is_several)
+      out += in_percent(row.probability) + " of the probability; ";
+    out += std::isnan(part.fraction)
+               ? std::string("of a mixture not known\n")
+               : fmt::format("of a mixture {} +- {} of the area\n", in_percent(part.fraction),
+                             in_percent(part.fraction_err));
   }
   return out;
 }
@@ -308,16 +327,22 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   const Unmixing unmixed = unmix(observed.curve, request.errors, members);
   const auto rows = rows_of(unmixed, members, probability);
   Inversion out;
-  out.verdict = verdict_of(rows, unmixed, chi2);
+  const bool is_several = is_of_several(rows, unmixed, chi2, request.errors);
+  out.verdict = verdict_of(rows, unmixed, is_several);
   std::vector<std::string> notes = limits_of(observed.curve, request.errors, Asked::Part);
-  std::ranges::move(notes_of(rows, unmixed, out.verdict, chi2, members, request.errors.has_clouds),
-                    std::back_inserter(notes));
+  std::ranges::move(
+      notes_of(rows, unmixed, out.verdict, chi2, is_several, members, request.errors.has_clouds),
+      std::back_inserter(notes));
   const NullTest u = null_test_of(observed.curve, unmixed.fitted);
   note_null_test(u, notes);
   out.summary =
-      headline(material.group, scenario.objects.front().name, out.verdict, rows) +
-      fmt::format("; one material alone: chi-square {:.4g}, a mixture {:.4g}, of {} measurements",
-                  chi2, unmixed.chi2, unmixed.measurements);
+      headline(material.group, scenario.objects.front().name, out.verdict, rows, is_several) +
+      fmt::format("; {}a mixture: chi-square {:.4g} of {} measurements",
+                  // Of clear sky as the mixture's, or it is no number beside it.
+                  request.errors.has_clouds
+                      ? std::string()
+                      : fmt::format("one material alone: chi-square {:.4g}, ", chi2),
+                  unmixed.chi2, unmixed.measurements);
   out.summary += std::isnan(unmixed.condition)
                      ? std::string("\n")
                      : fmt::format("; condition {:.3g}\n", unmixed.condition);
@@ -332,7 +357,7 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   out.page = material_page_of(
       fmt::format("What {} of {} is made of", material.group, scenario.objects.front().name),
       out.tables[2].table, unmixed, members.front().name, of_first,
-      out.summary + lines_of(rows, out.verdict));
+      out.summary + lines_of(rows, out.verdict, is_several));
   out.inputs = observed.inputs;
   out.inputs.insert(out.inputs.end(), inputs.begin(), inputs.end());
   out.seed = scenario.seed;

@@ -76,6 +76,22 @@ void warn_of_sets(const CountsFile &counts, const ObservationsFile &rows, const 
                      where);
 }
 
+/// Analysers one after the other: what they add up to is I of a body that stood still meanwhile.
+void warn_of_sequences(const CountsFile &counts, const Where &where, Diagnostics &diagnostics) {
+  double longest = 0;
+  for (std::size_t k = 1; k < counts.rows.size(); ++k)
+    if (const CountRow &a = counts.rows[k - 1], &b = counts.rows[k];
+        a.set == b.set && a.band == b.band)
+      longest = std::max(longest, seconds_between(b.time, a.time));
+  if (longest > 0)
+    diagnostics.warn(
+        fmt::format("--intensity-only takes I from sets of exposures, which are {:.2g} "
+                    "s apart: of a body whose light changes meanwhile it is wrong. "
+                    "Without it each exposure is compared at its own time",
+                    longest),
+        where);
+}
+
 } // namespace
 
 bool is_counts_table(std::string_view text) {
@@ -101,6 +117,7 @@ Result<ObservationsFile> observations_of_counts(std::string_view text, const std
   UMOV_ASSIGN(out, read_observations_text(to_ecsv(reduced), file, of_sets));
   if (!has_polarization) {
     warn_of_sets(counts, out, {file}, diagnostics);
+    warn_of_sequences(counts, {file}, diagnostics);
     return out;
   }
   const std::size_t all = counts.rows.size();

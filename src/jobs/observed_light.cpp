@@ -192,19 +192,29 @@ void CurveMaker::add_count(const Placed &placed, ObservedLightCurve &out) {
   out.curve.counts.push_back(count);
 }
 
-/// Of one time and site a band has one row, of whatever file.
+bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+/// Two telescopes of a site may measure at one time, but not the same number to its last digit.
+bool is_copy(const Placed &a, const Placed &b) {
+  if (a.file == b.file || a.band != b.band)
+    return false;
+  if (a.count != nullptr && b.count != nullptr)
+    return a.count->channel == b.count->channel && a.count->counts == b.count->counts &&
+           a.count->sky == b.count->sky;
+  return a.row != nullptr && b.row != nullptr && a.file->counts.empty() && b.file->counts.empty() &&
+         is_same(a.row->flux, b.row->flux) && is_same(a.row->mag, b.row->mag) &&
+         is_same(a.row->q, b.row->q) && is_same(a.row->u, b.row->u);
+}
+
 Result<void> check_no_row_in_two_files(std::span<const Placed> rows) {
   for (std::size_t b = 1; b < rows.size(); ++b)
     for (std::size_t a = 0; a < b; ++a)
-      if (rows[a].row != nullptr && rows[b].row != nullptr && rows[a].file != rows[b].file &&
-          rows[a].file->counts.empty() && rows[a].band == rows[b].band)
-        return fail(
-            ErrorCode::BadInput,
-            fmt::format("a second row for {} in band \"{}\"; the first is line {} of {}. One "
-                        "measurement per time, band and site was expected",
-                        to_iso(rows[b].time), printable(rows[b].row->band), rows[a].row->line,
-                        rows[a].file->path),
-            {rows[b].file->path, rows[b].row->line});
+      if (is_copy(rows[a], rows[b]))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("what was measured at {} stands in {} too: a measurement counts "
+                                "once",
+                                to_iso(rows[b].time), rows[a].file->path),
+                    {rows[b].file->path, rows[b].row != nullptr ? rows[b].row->line : 0});
   return {};
 }
 

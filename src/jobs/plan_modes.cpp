@@ -61,6 +61,11 @@ Result<std::vector<PlanAlternative>> alternatives_of_modes(const Scenario &scena
     object.has_assumed_epoch = object.lacks_epoch = false;
     out.push_back(std::move(one));
   }
+  if (out.empty())
+    return fail(ErrorCode::BadInput,
+                fmt::format("{}, none above 1 % of the probability: too much is open for a plan",
+                            counted(modes.rows.size(), "mode")),
+                {file});
   if (out.size() < 2)
     return fail(ErrorCode::BadInput,
                 fmt::format("{} above 1 % of the probability: nothing is left to decide",

@@ -1,6 +1,7 @@
 #include "jobs/u_null_test.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <limits>
 #include <map>
@@ -25,23 +26,30 @@ CountsOfSets sets_in_sequence(const ObservedCurve &curve) {
   return out;
 }
 
-/// U/I that a reduction makes of the fitted light of a set's exposures, which is not that of one
-/// moment where the light changes between them; none where it tells none.
+/// U/I of the scattering plane of `sample` that a reduction makes of the fitted light of a set's
+/// exposures, which is not that of one moment where the light, the distance or the plane change
+/// between them; none where it tells none.
 std::optional<double> reduced_u(const std::vector<const ObservedCount *> &set,
-                                const EndMember &fitted, std::size_t bands) {
+                                const EndMember &fitted, const ObservedCurve &curve,
+                                const ObservedSample &sample) {
   double net = 0, light = 0;
   std::vector<ChannelDatum> data;
   for (const ObservedCount *count : set) {
-    const std::size_t at = count->epoch * bands + count->band;
+    const std::size_t at = count->epoch * curve.bands.size() + count->band;
     const double seen =
         count->by_i * fitted.i[at] + count->by_q * fitted.q[at] + count->by_u * fitted.u[at];
     net += count->net;
     light += seen;
+    // As the instrument has it, whose reduction knows neither the distance nor the plane.
+    const ObservedEpoch &epoch = curve.epochs[count->epoch];
+    const double c = std::cos(2 * epoch.scattering_axis_rad) / epoch.flux_per_intensity;
+    const double s = std::sin(2 * epoch.scattering_axis_rad) / epoch.flux_per_intensity;
     data.push_back({seen,
                     count->sky,
                     count->fixed_variance,
                     count->excess2,
-                    {count->by_i, count->by_q, count->by_u, 0}});
+                    {count->by_i / epoch.flux_per_intensity, count->by_q * c - count->by_u * s,
+                     count->by_q * s + count->by_u * c, 0}});
   }
   if (!(net > 0 && light > 0))
     return {};
@@ -50,7 +58,8 @@ std::optional<double> reduced_u(const std::vector<const ObservedCount *> &set,
   const auto fit = fit_stokes(data, 3);
   if (!fit || !(fit->stokes[0] > 0))
     return {};
-  return fit->stokes[2] / fit->stokes[0];
+  const double twice = 2 * curve.epochs[sample.epoch].scattering_axis_rad;
+  return (fit->stokes[2] * std::cos(twice) - fit->stokes[1] * std::sin(twice)) / fit->stokes[0];
 }
 
 } // namespace
@@ -68,7 +77,7 @@ NullTest null_test_of(const ObservedCurve &curve, const EndMember &fitted) {
     const auto set = sets.find(sample.set);
     if (set == sets.end())
       continue;
-    const auto reduced = reduced_u(set->second, fitted, curve.bands.size());
+    const auto reduced = reduced_u(set->second, fitted, curve, sample);
     if (!reduced) {
       sample.u = std::numeric_limits<double>::quiet_NaN();
       continue;

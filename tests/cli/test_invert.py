@@ -351,7 +351,10 @@ def test_a_measurement_counts_once(umov, scene, tmp_path):
     assert "a.csv: is named twice" in umov("invert", "material", "a.csv", "a.csv", *ask).err
     assert "same.csv: holds what a.csv holds" in umov("invert", "material", "a.csv", "same.csv", *ask).err
     done = umov("invert", "material", "a.csv", "more.csv", *ask)
-    assert done.code == 3 and 'more.csv:2: a second row for 2018-01-21T05:14:00.000Z in band "nm:550"; the first is line 6 of a.csv' in done.err
+    assert done.code == 3 and "more.csv:2: what was measured at 2018-01-21T05:14:00.000Z stands in a.csv too" in done.err
+    # Another telescope at the same time says another number.
+    (tmp_path / "more.csv").write_text((tmp_path / "more.csv").read_text().replace(",1,.1", ",1.02,.1"))
+    assert umov("invert", "material", "a.csv", "more.csv", *ask).code in (0, 4)
 
 
 @pytest.mark.parametrize("question", [("pose", "--grid", "1000"), ("material", "--group", "body_my", "--candidates", "paint_white,paint_black"),

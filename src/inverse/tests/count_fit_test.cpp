@@ -135,6 +135,23 @@ TEST(CountFit, LightBelowItsErrorsTellsNeitherPartsNorChanges) {
   EXPECT_LT(found.chi2, steps);
 }
 
+TEST(CountFit, LightIsSeenWhateverTheZeroPointsAre) {
+  CurveErrors errors = errors_of_noise_alone();
+  errors.zero_point_sd = 3; // no brightness is known, its changes are
+  const auto members = metal_and_paint();
+  for (const bool has_counts : {true, false}) {
+    ObservedCurve curve = in_sequence(truth, 1);
+    if (!has_counts)
+      curve.counts.clear();
+    const Unmixing found = unmix(curve, errors, members);
+    EXPECT_GT(found.scale, 0);
+    EXPECT_TRUE(std::isfinite(found.groups[0].fraction));
+    EXPECT_GT(
+        check_health(curve, errors, members[0], {{"x", members[1], 1, 0}}, {}).rows[0].change_err,
+        0);
+  }
+}
+
 TEST(CountFit, AChangeThatTheScaleAloneExplainsIsNotSeen) {
   ObservedCurve curve = in_sequence(truth, 1);
   curve.counts.clear();

@@ -38,7 +38,9 @@ bool has_element_line(std::string_view text) {
 
 bool is_first_of_a_set(std::string_view line) {
   constexpr std::size_t shortest = 60; // of 69 columns, of which some cut the last ones off
-  return line.starts_with("1 ") && line.size() >= shortest;
+  const auto is_digit = [&](std::size_t at) { return line[at] >= '0' && line[at] <= '9'; };
+  return line.size() >= shortest && line.starts_with("1 ") && line[8] == ' ' && line[17] == ' ' &&
+         is_digit(3) && is_digit(6) && is_digit(18);
 }
 
 using Reader = Result<void> (*)(std::string_view, const std::string &, const omm::Sink &);

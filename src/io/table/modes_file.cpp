@@ -37,7 +37,8 @@ public:
   [[nodiscard]] bool has(std::string_view name) const {
     return column_named(table_, name).has_value();
   }
-  [[nodiscard]] Result<double> number(std::size_t row, const std::string &name) const {
+  [[nodiscard]] Result<double> number(std::size_t row, const std::string &name,
+                                      double least = -1e30) const {
     constexpr double most = 1e30;
     const auto column = column_named(table_, name);
     if (!column)
@@ -53,7 +54,8 @@ public:
                   fmt::format("{} is in \"{}\"; \"{}\" was expected, as answers have it", name,
                               printable(told->second), unit_of(name)),
                   {file_});
-    return number_in(table_, row, *column, -most, most, "a number", file_);
+    return number_in(table_, row, *column, least, most,
+                     least < 0 ? "a number" : "a number of 0 or more", file_);
   }
   [[nodiscard]] Result<Quaternion> attitude(std::size_t row) const;
   [[nodiscard]] Result<std::vector<double>> covariance(std::size_t row, bool has_rates) const;
@@ -98,7 +100,7 @@ Result<std::vector<double>> ModesTable::covariance(std::size_t row, bool has_rat
 
 Result<ModesRow> mode_of(const ModesTable &table, std::size_t row, bool has_rates) {
   ModesRow out;
-  UMOV_ASSIGN(weight, table.number(row, "weight"));
+  UMOV_ASSIGN(weight, table.number(row, "weight", 0));
   out.weight = weight;
   if (table.has("scale")) {
     UMOV_ASSIGN(scale, table.number(row, "scale"));

@@ -119,6 +119,11 @@ TEST(Elements, ANameThatLooksLikeAnotherFormIsAName) {
     EXPECT_EQ(form_of_elements(name + std::string("\n") + lines), ElementsForm::Tle) << name;
   }
   EXPECT_EQ(form_of_elements("{\n\"A\": 1}"), ElementsForm::OmmJson);
+  // A row of a table whose first name begins as an element line does.
+  EXPECT_EQ(form_of_elements("OBJECT_NAME,OBJECT_ID,EPOCH,MEAN_MOTION,ECCENTRICITY\n1 "
+                             "HOPPER,1964-001A,2018-01-21T04:00:00,"
+                             "15.54000000,0.0003457,51.6432\n"),
+            ElementsForm::OmmCsv);
 }
 
 TEST(Elements, TheBlueBooksExampleIsReadInBothForms) {
