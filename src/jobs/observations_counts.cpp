@@ -85,9 +85,9 @@ void warn_of_sequences(const CountsFile &counts, const Where &where, Diagnostics
       longest = std::max(longest, seconds_between(b.time, a.time));
   if (longest > 0)
     diagnostics.warn(
-        fmt::format("--intensity-only takes I from sets of exposures, which are {:.2g} "
-                    "s apart: of a body whose light changes meanwhile it is wrong. "
-                    "Without it each exposure is compared at its own time",
+        fmt::format("I alone is that of sets of exposures, which are {:.2g} s apart: of a "
+                    "body whose light changes meanwhile it is wrong. With q and u each "
+                    "exposure is compared at its own time",
                     longest),
         where);
 }
