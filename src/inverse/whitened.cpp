@@ -66,6 +66,7 @@ Whitened of_counts(const ObservedCurve &curve, const CurveErrors &errors,
   const EndMember *const known = zeros != nullptr ? zeros : about;
   const EndMember &noisy = known != nullptr ? *known : brightest(members);
   std::vector<PartLight> parts;
+  parts.reserve(members.size());
   for (const EndMember &m : members)
     parts.push_back({m.i, m.q, m.u, {}});
   ModelLight model = light_of(noisy);
