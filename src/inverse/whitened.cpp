@@ -35,6 +35,26 @@ void whiten_band(MatrixXd &columns, VectorXd &right, const std::vector<Index> &r
   take(right);
 }
 
+/// Rows that the zero point of each band moves, and by how much.
+class ZeroPoints {
+public:
+  explicit ZeroPoints(std::size_t bands) : rows_(bands), moved_(bands) {}
+  void add(std::size_t band, Index row, double moved) {
+    rows_[band].push_back(row);
+    moved_[band].push_back(moved);
+  }
+  void whiten(Whitened &out) const {
+    for (std::size_t b = 0; b < rows_.size(); ++b)
+      whiten_band(
+          out.columns, out.right, rows_[b],
+          Eigen::Map<const VectorXd>(moved_[b].data(), static_cast<Index>(moved_[b].size())));
+  }
+
+private:
+  std::vector<std::vector<Index>> rows_;
+  std::vector<std::vector<double>> moved_;
+};
+
 /// Before zero points are whitened. `light`: rows that are linear in it.
 void put_shown(const std::vector<Index> &light, Whitened &out) {
   constexpr double sigmas = 3;
@@ -83,16 +103,13 @@ Whitened of_counts(const ObservedCurve &curve, const CurveErrors &errors,
   std::vector<Index> all(counts.size());
   std::iota(all.begin(), all.end(), Index{0});
   put_shown(all, out);
-  std::vector<std::vector<Index>> rows(curve.bands.size());
-  std::vector<std::vector<double>> common(curve.bands.size());
+  ZeroPoints zeros_of_bands(curve.bands.size());
   for (const CountLikelihood::Set &set : counts.sets())
     for (std::size_t k = set.begin; k < set.begin + set.size; ++k) {
-      rows[set.group].push_back(static_cast<Index>(k));
-      common[set.group].push_back(errors.zero_point_sd * scale * white.light[k]);
+      zeros_of_bands.add(set.group, static_cast<Index>(k),
+                         errors.zero_point_sd * scale * white.light[k]);
     }
-  for (std::size_t b = 0; b < rows.size(); ++b)
-    whiten_band(out.columns, out.right, rows[b],
-                Eigen::Map<const VectorXd>(common[b].data(), static_cast<Index>(common[b].size())));
+  zeros_of_bands.whiten(out);
   return out;
 }
 
@@ -123,8 +140,7 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
   Whitened out;
   out.columns = MatrixXd::Zero(static_cast<Index>(3 * curve.samples.size()), n);
   out.right = VectorXd::Zero(out.columns.rows());
-  std::vector<std::vector<Index>> rows(curve.bands.size());
-  std::vector<std::vector<double>> common(curve.bands.size());
+  ZeroPoints zeros_of_bands(curve.bands.size());
   std::vector<Index> light_rows;
   Index row = 0;
   for (const ObservedSample &s : curve.samples) {
@@ -139,10 +155,9 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
     for (Index k = 0; k < n; ++k)
       out.columns(row, k) = members[static_cast<std::size_t>(k)].i[at] / sd;
     out.right[row] = s.i / sd;
-    rows[s.band].push_back(row);
     light_rows.push_back(row);
     const double moved = zeros != nullptr ? std::max(zeros->i[at], 0.0) : light;
-    common[s.band].push_back(errors.zero_point_sd * moved / sd);
+    zeros_of_bands.add(s.band, row, errors.zero_point_sd * moved / sd);
     ++row;
     ++out.measurements;
     if (!(known.l_qq > 0))
@@ -167,9 +182,7 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
   out.columns.conservativeResize(row, n);
   out.right.conservativeResize(row);
   put_shown(light_rows, out);
-  for (std::size_t b = 0; b < rows.size(); ++b)
-    whiten_band(out.columns, out.right, rows[b],
-                Eigen::Map<const VectorXd>(common[b].data(), static_cast<Index>(common[b].size())));
+  zeros_of_bands.whiten(out);
   return out;
 }
 

@@ -1,5 +1,7 @@
 #include "jobs/invert_parts.h"
 
+#include "jobs/counts_in_sequence.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,21 +24,13 @@ ObservedCurve part(const ObservedCurve &curve, std::size_t band, bool has_polari
   return out;
 }
 
-/// Analysers follow each other: what was reduced from them is of a body that stood still meanwhile.
-bool is_in_sequence(const ObservedCurve &curve) {
-  std::size_t exposures = 0; // counts stand in order of epochs and bands
-  for (std::size_t k = 0; k < curve.counts.size(); ++k) {
-    const ObservedCount &b = curve.counts[k], &a = curve.counts[k == 0 ? 0 : k - 1];
-    exposures += k == 0 || a.epoch != b.epoch || a.band != b.band ? 1u : 0u;
-  }
-  return exposures > curve.samples.size();
-}
-
 } // namespace
 
 std::vector<DataPart> parts_of(const ObservedCurve &curve, bool has_polarization) {
   std::vector<DataPart> out;
   const std::size_t bands = curve.bands.size();
+  // What is reduced from analysers that follow each other is of a body that stood still meanwhile.
+  const bool is_in_sequence = !counts_in_sequence(curve).empty();
   for (std::size_t k = 0; k <= (bands > 1 ? bands : 0); ++k) {
     const std::size_t band = k == 0 ? bands : k - 1;
     const ObservedCurve all = part(curve, band, true);
@@ -46,7 +40,7 @@ std::vector<DataPart> parts_of(const ObservedCurve &curve, bool has_polarization
     if (has_polarization &&
         std::ranges::any_of(all.samples, [](const ObservedSample &s) { return !std::isnan(s.q); }))
       out.push_back({name, "I,q,u", all});
-    if (!is_in_sequence(curve))
+    if (!is_in_sequence)
       out.push_back({name, "I", part(curve, band, false)});
   }
   return out;

@@ -1,30 +1,15 @@
 #include "jobs/u_null_test.h"
 
-#include <algorithm>
+#include "jobs/counts_in_sequence.h"
+
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
-#include <map>
 #include <optional>
 #include <umov/reduction/stokes_fit.h>
 
 namespace umov::jobs {
 namespace {
-
-using CountsOfSets = std::map<std::size_t, std::vector<const ObservedCount *>>;
-
-CountsOfSets sets_in_sequence(const ObservedCurve &curve) {
-  CountsOfSets out;
-  for (const ObservedCount &count : curve.counts)
-    if (count.set != no_set)
-      out[count.set].push_back(&count);
-  std::erase_if(out, [](const auto &set) {
-    return std::ranges::all_of(set.second, [&](const ObservedCount *count) {
-      return count->epoch == set.second.front()->epoch;
-    });
-  });
-  return out;
-}
 
 /// U/I of the scattering plane of `sample` that a reduction makes of the fitted light of a set's
 /// exposures, which is not that of one moment where the light, the distance or the plane change
@@ -67,7 +52,7 @@ std::optional<double> reduced_u(const std::vector<const ObservedCount *> &set,
 NullTest null_test_of(const ObservedCurve &curve, const EndMember &fitted) {
   if (fitted.i.empty())
     return null_test(curve, std::vector<double>(curve.samples.size(), 0));
-  const CountsOfSets sets = sets_in_sequence(curve);
+  const auto sets = counts_in_sequence(curve);
   ObservedCurve seen = curve;
   std::vector<double> model(curve.samples.size(), 0);
   for (std::size_t k = 0; k < model.size(); ++k) {

@@ -1,6 +1,5 @@
 #include "inverse/tests/box_light.h"
 
-#include <numeric>
 #include <umov/inverse/contributions.h>
 
 namespace umov {
