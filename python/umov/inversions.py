@@ -208,7 +208,7 @@ def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, An
     >>> green = {"bands.set": ["nm:550"]}
     >>> curve = umov.run(EXAMPLES / "agena_maui.toml", set={**fixed, **green})
     >>> umov.invert_pose(curve, EXAMPLES / "agena_maui.toml", set=green, fit=umov.Fit(grid=1000))
-    <umov.Inversion: determined; modes, set95, samples, twins, fit>
+    <umov.Inversion: determined; modes, set95, samples, twins, fit, contributions>
     """
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
@@ -260,7 +260,7 @@ def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | No
     >>> found = umov.invert_spin(curve, EXAMPLES / "agena_maui.toml", period_s=23.7, aliases=False, axis="x", set=green,
     ...                          fit=umov.Fit(grid=1000))
     >>> found.verdict, list(found.tables)
-    ('determined', ['modes', 'periods', 'set95', 'samples', 'fit'])
+    ('determined', ['modes', 'periods', 'set95', 'samples', 'fit', 'contributions'])
     """
     if axis not in ("x", "y", "z", "any"):
         raise UsageError(f"axis is {axis!r}; x, y, z or any was expected")

@@ -39,7 +39,7 @@ Table contributions_table(const Contributions &contributions) {
 
 PlotFigure contributions_figure(const Contributions &contributions) {
   PlotFigure out{"What each band and Stokes component contributed",
-                 "share of what is known of the heaviest attitude [%]",
+                 "share of what is known [%]",
                  "",
                  {}};
   double most = 0;

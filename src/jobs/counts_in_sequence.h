@@ -1,5 +1,6 @@
 #pragma once
-// Private: analysers that follow each other, of which a reduction is right for a body at rest alone.
+// Private: analysers that follow each other, of which a reduction is right for a body at rest
+// alone.
 
 #include <map>
 #include <umov/inverse/observed_curve.h>
