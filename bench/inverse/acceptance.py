@@ -8,7 +8,7 @@ OBJECT: as blind.py has them. --third: 40 epochs in that third of the pass inste
 another part (normal in ln, a third), which is free in the fit. --case-r: the pass of case_r.py in 40 epochs, noise of photons alone, and S/N of the I (550 nm) that half of
 all attitudes and epochs exceed, not of the mean I of each curve, of which a glint is the larger part. Seconds are those of the processor.
 --wrong 1: the true object is another one, as blind.py has it; the fit is told the floor, which is not put in, and takes the materials for unknown (as umov invert does by itself).
-missed: the truth itself fits better than the best mode by more than 2 in chi-square (with the gains that the data were made with, so it fits a little better still).
+missed: the truth itself fits better than the best mode by more than 2 in chi-square (with the gains that the data were made with, so it fits a little better still), of the rows and with the floor of the fit.
 --facets: of a box-wing, as it is fitted and as the data have it, instead of 600 and 1,500. --step: seconds from one epoch to the next; 9 are 39 epochs of that pass."""
 import math
 import random
@@ -80,13 +80,14 @@ def asked(o, work, meshes, trial):
     rows = blind.make_curve(o, work, meshes, trial, blind.inertial(truth), o.step or step, rng, span, o.scenario)
     if not any(float(row["intensity"]) > 0 for row in rows):
         return None  # no light at all: nothing was seen
-    chi2 = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, 0 if o.wrong else o.floor, rng, work / "obs.csv",
-                             EXACT if o.case_r else coverage.ZERO_POINT_SD, o.typical)
+    noise = coverage.observed(behind_clouds(rows, rng) if o.clouds else rows, o.snr, 0 if o.wrong else o.floor, rng, work / "obs.csv",
+                              EXACT if o.case_r else coverage.ZERO_POINT_SD, o.typical)
     began = processor_s()
     verdict, clock = blind.asked(o, work, "pose", *(["--clouds"] if o.clouds else []))
     seconds = processor_s() - began
     same = blind.twins(truth, verdict["symmetries"])
     off = [min(blind.apart(t, m["q"]) for t in same) for m in verdict["modes"]]
+    chi2 = noise.chi2(verdict["floor"], blind.table_rows(work / "answer/fit.ecsv"))
     told = told_deg(work / "answer/modes.ecsv", off.index(min(off)))
     out = Answer(off[0], min(off), told, len(off), blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"],
                  not o.clouds and not o.wrong and verdict["chi2"] > chi2 + 2, verdict["verdict"] == "determined", seconds, clock)

@@ -30,16 +30,41 @@ def arc(rng):
     return begin, begin + (epochs - 0.5) * step, step
 
 
+class Away(typing.NamedTuple):
+    """A row of data less the truth with the gains that it was made with."""
+    intensity: float
+    seen: float
+    sd: float  # of intensity, by photons
+    polarization: list  # of q and u, where they are measured
+    polarization_sd: float  # by photons
+
+
+class Noise(typing.NamedTuple):
+    of_gains: float  # chi-square
+    median: float  # intensity
+    rows: dict  # of time and band
+
+    def chi2(self, floor, fitted):
+        """Of the truth (equation 3 of docs/theory/inverse.md), over the rows that a fit took (not those of the penumbra), with the floor that it came to."""
+        out = self.of_gains
+        for row in fitted:
+            a = self.rows[row["time_utc"], row["band"]]
+            out += a.intensity**2 / (a.sd**2 + (floor * a.seen) ** 2 + (min(OF_MEDIAN, floor / 2) * self.median) ** 2)
+            if row["q_scat"] != "nan":
+                out += sum(x * x for x in a.polarization) / (a.polarization_sd**2 + (floor / 2) ** 2)
+        return out
+
+
 def observed(rows, snr, floor, rng, path, zero_point_sd=ZERO_POINT_SD, typical=None):
     """A table as an observer has it whose model is wrong by `floor`: S/N is that of the mean I of a band, or of I where it is `typical`; dark epochs stand with their noise.
-    Returns the chi-square of the truth with the gains that it was made with (equation 3 of docs/theory/inverse.md)."""
+    Returns how far that is from the truth."""
     lit = [r for r in rows if float(r["intensity"]) > 0]
     unit = {r["band"]: 3.1 * float(r["I"]) / float(r["intensity"]) for r in lit}  # of what is dark: of another epoch
     of_median = min(OF_MEDIAN, floor / 2)
     mean = {band: typical or statistics.mean(float(r["intensity"]) for r in rows if r["band"] == band) for band in sorted(unit)}
     median = statistics.median(float(r["intensity"]) for r in rows if r["band"] in unit)
     gain = {band: 1 + zero_point_sd * rng.gauss(0, 1) for band in mean}
-    chi2 = sum(((g - 1) / zero_point_sd) ** 2 for g in gain.values())
+    away = Noise(sum(((g - 1) / zero_point_sd) ** 2 for g in gain.values()), median, {})
     out = ["# pol_frame: equatorial", "time_utc,band,flux,flux_err,q,u,q_err,u_err"]
     for r in (r for r in rows if r["band"] in unit):
         true, m, scale = float(r["intensity"]), mean[r["band"]], unit[r["band"]]
@@ -47,17 +72,17 @@ def observed(rows, snr, floor, rng, path, zero_point_sd=ZERO_POINT_SD, typical=N
             scale = 3.1 * float(r["I"]) / true
         sd = blind.photon_sd(true, m, snr)
         seen = gain[r["band"]] * (true * (1 + floor * rng.gauss(0, 1)) + of_median * median * rng.gauss(0, 1)) + sd * rng.gauss(0, 1)
-        chi2 += (seen - gain[r["band"]] * true) ** 2 / (sd**2 + (floor * seen) ** 2 + (of_median * median) ** 2)
+        off, e = [], 0.0
         cells = [r["time_utc"], r["band"], f"{scale * seen:.6e}", f"{scale * sd:.6e}", "", "", "", ""]
         if true > 3 * sd and r["q"]:
             e = math.sqrt(2) * sd / true
             both = math.hypot(e, floor / 2)
             off = [both * rng.gauss(0, 1) for _ in "qu"]
-            chi2 += sum(x * x for x in off) / both**2
             cells[4:] = [f"{float(r[k]) + x:.6f}" for k, x in zip("qu", off)] + [f"{e:.6f}"] * 2
+        away.rows[r["time_utc"], r["band"]] = Away(seen - gain[r["band"]] * true, seen, sd, off, e)
         out.append(",".join(cells))
     path.write_text("\n".join(out) + "\n")
-    return chi2
+    return away
 
 
 def tail(n, k, p):

@@ -56,6 +56,7 @@
 #include <umov/inverse/direction_table.h>
 #include <umov/inverse/health.h>
 #include <umov/inverse/identify.h>
+#include <umov/inverse/joined_epochs.h>
 #include <umov/inverse/likelihood.h>
 #include <umov/inverse/null_test.h>
 #include <umov/inverse/observed_curve.h>

@@ -167,6 +167,9 @@ Result<Peaks> peaks_of(const CurveModel &model, const CurveLikelihood &likelihoo
 struct Judged {
   std::span<const Turning> best;
   std::size_t of = 0;
+  /// Some attitude explains the curve. Else there is no posterior to follow to all its places, and
+  /// errors that are far too small make that a work of hours.
+  bool is_explained = true;
 };
 
 /// Takes away the turnings that a few epochs rule out by e^20 and more: each further row adds to
@@ -240,12 +243,13 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
                              Freedom freedom, const Judged &judged, const SearchOptions &options) {
   PoseAnswer out;
   UMOV_ASSIGN(peaks, peaks_of(model, likelihood, fits, freedom, options));
-  const double beside = evidence_beside(quick, likelihood, peaks, judged, options.threads);
+  const double beside =
+      judged.is_explained ? evidence_beside(quick, likelihood, peaks, judged, options.threads) : 0;
   if (beside < 0)
     return tl::unexpected(stopped());
   auto &[modes, samples, is_settled] = peaks;
   constexpr double much = 0.01; // a fifth of what a set of 95 % may leave out
-  if (judged.of > 0 && (beside > much || !is_described(modes, samples))) {
+  if (judged.of > 0 && judged.is_explained && (beside > much || !is_described(modes, samples))) {
     Samples all = inverse::sample_all(quick, model, likelihood, modes, options);
     if (all.draws.empty())
       return tl::unexpected(stopped());
@@ -287,11 +291,22 @@ double PoseMode::sd_rad() const {
   return std::sqrt(algebra::symmetric_eigen(all.topLeftCorner(3, 3)).values[2]);
 }
 
+bool explains_nothing(const PoseAnswer &answer, double floor) {
+  const double dof =
+      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+  constexpr double unlikely = 1e-6; // and a model twice as far off as it was taken to be
+  constexpr double none = 4, least = 0.005;
+  return (dof > 0 && chi2_probability(answer.misfit, dof) < unlikely && answer.misfit > 2 * dof) ||
+         answer.model_error > none * std::max(floor, least);
+}
+
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options) {
   return search_pose({model, model, model}, options);
 }
 
 namespace {
+
+constexpr std::size_t of_attitude = 4; ///< unknowns: attitude and scale
 
 /// The errors that the best of some fits leave, and the likelihood of them.
 class FoundErrors {
@@ -317,6 +332,15 @@ public:
     return true;
   }
   [[nodiscard]] const CurveLikelihood &likelihood() const { return likelihood_; }
+  /// What is known of the best of some fits to all of the curve, before a posterior.
+  [[nodiscard]] PoseAnswer of_best(const std::vector<TurningFit> &fits) const {
+    PoseAnswer out;
+    out.chi2 = std::ranges::min(fits, {}, [](const TurningFit &f) { return f.at.chi2; }).at.chi2;
+    out.measurements = likelihood_.measurements();
+    out.unknowns = of_attitude;
+    tell(out);
+    return out;
+  }
   void tell(PoseAnswer &answer) const {
     answer.errors = error_.errors;
     answer.model_error = error_.found;
@@ -461,13 +485,14 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
   UMOV_TRY(needs_measurements(errors.likelihood()));
   UMOV_ASSIGN(judged, search_grid(quick, options));
   UMOV_ASSIGN(fits, fits_of_all(models, judged, errors, options));
+  const bool is_explained = !explains_nothing(errors.of_best(fits), options.errors.floor);
   UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), fits, Freedom::Attitude,
-                             {judged, options.grid}, options));
+                             {judged, options.grid, is_explained}, options));
   out.share_of_so3 = inverse::share_of(out.set95);
   errors.tell(out);
   if (&quick != &first && &quick != &model)
     out.poses_lit += quick.poses_lit();
-  out.unknowns = 4; // attitude and scale
+  out.unknowns = of_attitude;
   return out;
 }
 

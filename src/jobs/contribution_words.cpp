@@ -38,10 +38,8 @@ Table contributions_table(const Contributions &contributions) {
 }
 
 PlotFigure contributions_figure(const Contributions &contributions) {
-  PlotFigure out{"What each band and Stokes component contributed",
-                 "share of what is known [%]",
-                 "",
-                 {}};
+  PlotFigure out{
+      "What each band and Stokes component contributed", "share of what is known [%]", "", {}};
   double most = 0;
   for (std::size_t k = 0; k < contributions.all.size(); ++k) {
     const Contribution &one = contributions.all[k];

@@ -4,6 +4,7 @@
 #include "jobs/invert_between.h"
 #include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
+#include "jobs/searched_curve.h"
 
 #include <fmt/format.h>
 
@@ -27,15 +28,18 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                               Diagnostics &diagnostics) {
   const auto light = lighting_of(ready.light, options.threads, monitor);
   const auto quick_light = quick_lighting(ready, options.threads, monitor);
-  const CurveModel model(observed.curve, searched_lighting(ready, options.threads, monitor),
-                         observed.column, parts_of(ready));
-  const CurveModel first(observed.curve, first_lighting(ready, options.threads, monitor),
-                         observed.column, parts_of(ready));
-  const CurveModel quick(observed.curve, quick_light, observed.column);
+  const ObservedCurve searched =
+      searched_curve(observed.curve, ready.light.model().scene(), request.errors);
+  const auto last_light = searched_lighting(ready, options.threads, monitor);
+  const CurveModel model(searched, last_light, observed.column, parts_of(ready));
+  const CurveModel whole(observed.curve, last_light, observed.column, parts_of(ready));
+  const CurveModel first(searched, first_lighting(ready, options.threads, monitor), observed.column,
+                         parts_of(ready));
+  const CurveModel quick(searched, quick_light, observed.column);
   UMOV_ASSIGN(answer, search_pose({model, first, quick},
                                   search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
-  Judgement judgement = judge(answer, model, request.errors, symmetries);
+  Judgement judgement = judge(answer, model, whole, request.errors, symmetries);
   UMOV_TRY(judge_direct_light(scenario, request, ready, observed.curve, answer, options, monitor,
                               judgement));
   Inversion out;
@@ -46,7 +50,7 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                 {"set95", set_table(answer)},
                 {"samples", samples_table(answer, false)},
                 {"twins", twins_table(answer, symmetries)},
-                {"fit", fit_table(observed, model, answer)},
+                {"fit", fit_table(observed, whole, answer)},
                 {"contributions", contributions_table(judgement.contributions)}};
   note_start(out.tables.front().table, body_words(ready.light.model().scene()), observed, answer,
              judgement);

@@ -176,7 +176,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   const auto symmetries = find_symmetries(light, scenario.seed);
   keep_masks(ready);
   const CurveModel model(curve, searched, ready.observed.column, asked.parts);
-  Judgement judgement = judge(answer.pose, model, request.errors, symmetries);
+  Judgement judgement = judge(answer.pose, model, model, request.errors, symmetries);
   UMOV_TRY(judge_direct_light(scenario, request, ready, curve, answer.pose, options, monitor,
                               judgement));
   const CurveModel coarse(curve, asked.coarse, ready.observed.column);

@@ -64,8 +64,8 @@ struct Families {
 };
 Families families_of(const PoseAnswer &answer, const std::vector<BodySymmetry> &symmetries);
 
-/// What an answer is worth.
-Verdict verdict_of(const PoseAnswer &answer, const Families &families);
+/// What an answer is worth. `floor`: as it was told.
+Verdict verdict_of(const PoseAnswer &answer, const Families &families, double floor);
 
 /// The chance of a best fit as bad as this one, where it is below .001. Such a fit is either not
 /// the best there is (a spin that a search passed by had a chi-square 100 lower,
@@ -79,7 +79,8 @@ struct Judgement {
   Families families;
   std::array<double, 3> axis_spread_deg{};
   NullTest null_test;
-  Contributions contributions; ///< none where nothing fits
+  Contributions contributions;                 ///< none where nothing fits
+  std::size_t epochs = 0, epochs_searched = 0; ///< before and after some were joined
   std::vector<std::string> notes;
   std::vector<Parameter> nuisances;
   std::vector<double> fitted; ///< of those that are parts of the light, the last ones: [sd]
@@ -89,9 +90,10 @@ struct Judgement {
 /// An answer is undetermined because its posterior is wide, and for nothing else that is known.
 bool is_wide_alone(const PoseAnswer &answer, const ObservedCurve &curve,
                    const Judgement &judgement);
-/// All of it, of an answer.
-Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
-                const std::vector<BodySymmetry> &symmetries);
+/// All of it, of an answer to the curve of `searched`; `whole` has that curve before its epochs
+/// were joined.
+Judgement judge(const PoseAnswer &answer, const CurveModel &searched, const CurveModel &whole,
+                const CurveErrors &errors, const std::vector<BodySymmetry> &symmetries);
 std::string json_of(const char *question, const PoseAnswer &answer, const Judgement &judgement,
                     const std::vector<BodySymmetry> &symmetries);
 /// How well the best fit does.

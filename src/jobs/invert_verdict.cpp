@@ -49,11 +49,8 @@ std::string in_digits(double number) {
   return number < 99.5 ? fmt::format("{:.2g}", number) : fmt::format("{:.0f}", number);
 }
 
-Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
-  const double dof =
-      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
-  constexpr double unlikely = 1e-6; // and a model twice as far off as it was taken to be
-  if (dof > 0 && chi2_probability(answer.misfit, dof) < unlikely && answer.misfit > 2 * dof)
+Verdict verdict_of(const PoseAnswer &answer, const Families &families, double floor) {
+  if (explains_nothing(answer, floor))
     return Verdict::NoFit;
   constexpr double wide = 0.01; // of all attitudes
   if (answer.is_broad || answer.share_of_so3 > wide || answer.modes.empty())
@@ -87,7 +84,7 @@ void add_parts(const std::vector<PartKind> &parts, const BestLight &best, Judgem
 
 /// A misfit far beyond the floor, which no material within its priors and no attitude explains.
 void doubt_model(const PoseAnswer &answer, double floor, Judgement &out) {
-  constexpr double other = 2.5, none = 4, least = 0.005;
+  constexpr double other = 2.5, least = 0.005;
   const double times = answer.model_error / std::max(floor, least);
   if (!(times > other))
     return;
@@ -96,9 +93,7 @@ void doubt_model(const PoseAnswer &answer, double floor, Judgement &out) {
                                   "attitude is not sure",
                                   answer.is_model_error_more ? "more than " : "",
                                   answer.model_error, floor));
-  if (times > none)
-    out.verdict = Verdict::NoFit;
-  else if (out.verdict == Verdict::Determined)
+  if (out.verdict == Verdict::Determined)
     out.verdict = Verdict::Undetermined;
 }
 
@@ -150,22 +145,24 @@ bool is_wide_alone(const PoseAnswer &answer, const ObservedCurve &curve,
          !chance_of_bad_fit(answer, answer.errors) && !is_steady(curve, answer.errors);
 }
 
-Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
-                const std::vector<BodySymmetry> &symmetries) {
-  const ObservedCurve &curve = model.curve();
+Judgement judge(const PoseAnswer &answer, const CurveModel &searched, const CurveModel &whole,
+                const CurveErrors &errors, const std::vector<BodySymmetry> &symmetries) {
+  const ObservedCurve &curve = whole.curve();
   Judgement out;
+  out.epochs = curve.epochs.size();
+  out.epochs_searched = searched.curve().epochs.size();
   out.families = families_of(answer, symmetries);
-  out.verdict = verdict_of(answer, out.families);
+  out.verdict = verdict_of(answer, out.families, errors.floor);
   // What a note says the data cannot tell is not told, however narrow a fit came out.
   if (out.verdict == Verdict::Determined && is_steady(curve, errors))
     out.verdict = Verdict::Undetermined;
   if (out.verdict == Verdict::Determined && curve.epochs.size() == 1)
     out.verdict = Verdict::Ambiguous;
   out.axis_spread_deg = axis_spread_deg(answer);
-  const BestLight best = best_light(model, answer);
+  const BestLight best = best_light(whole, answer);
   out.null_test = null_test_of(curve, best.light);
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
-  add_parts(model.parts(), best, out);
+  add_parts(whole.parts(), best, out);
   out.notes = limits_of(curve, errors, Asked::Attitude);
   doubt_model(answer, errors.floor, out);
   doubt_fit(answer, errors, out);
@@ -176,6 +173,10 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
   note_null_test(out.null_test, out.notes);
+  if (out.epochs_searched < out.epochs)
+    out.notes.push_back(fmt::format("the search has {} epochs for {}: those with next to the "
+                                    "same directions of Sun and observer are joined",
+                                    out.epochs_searched, out.epochs));
   if (!answer.is_settled)
     out.notes.emplace_back("the search did not come to rest: a better attitude than these may be "
                            "near; a larger --grid or --floor may help");
@@ -190,7 +191,7 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
                                        "few to say how sure the attitude is",
                                        answer.effective));
   if (out.verdict != Verdict::NoFit)
-    out.contributions = {contributions_to(answer, model, 1), curve.bands};
+    out.contributions = {contributions_to(answer, searched, 1), curve.bands};
   else
     out.notes.emplace_back("no attitude explains the data within their errors and --floor: is it "
                            "this object, does it stand still, are its materials right?");
@@ -219,6 +220,8 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   out["heaviest"] = judgement.families.heaviest;
   out["spread_deg"] = judgement.families.spread_deg;
   out["share_of_so3"] = answer.share_of_so3;
+  out["epochs"] = judgement.epochs;
+  out["epochs_searched"] = judgement.epochs_searched;
   out["settled"] = answer.is_settled;
   out["effective_samples"] = answer.effective;
   if (judgement.light_between)

@@ -80,11 +80,17 @@ struct PoseAnswer {
   std::size_t poses_lit = 0;
 };
 
+/// No attitude explains the curve: `misfit` is over twice its degrees of freedom and less likely
+/// than 1e-6, or the best one misses the data by more than four times `floor` (CurveErrors::floor
+/// as it was told, .005 at least), which no material within its priors makes up for.
+bool explains_nothing(const PoseAnswer &answer, double floor);
+
 /// Evidences of runs that agree differ by less, in ln.
 inline constexpr double alike_evidences = 0.5;
 
-/// All fixed attitudes that explain a curve. Interrupted if the light stopped; BadInput for a curve
-/// without measurements.
+/// All fixed attitudes that explain a curve; where none does, those that miss it the least, and no
+/// particles are followed to what lies beside them. Interrupted if the light stopped; BadInput for
+/// a curve without measurements.
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options);
 /// Models of one curve, the more often they are asked the quicker.
 struct SearchModels {
