@@ -4,8 +4,9 @@ attitudes with noise of photons, at an unknown range; then objects that the libr
 Prints a line a curve and the summary.
 
 usage: identify.py [--objects 10] [--trials 2] [--unseen 10] [--index 100 [--copies 10]] [--snr 100] [--seed 1]
-                   [--own] [--umov PATH] [--work DIR] [options of umov identify]
+                   [--own] [--wrong 1] [--umov PATH] [--work DIR] [options of umov identify]
 --trials: curves of each object. --own: scenarios are named, so that the best are judged by their own light.
+--wrong 1: materials of the true objects are others than the library's: slopes of lobes 20 % off (normal, ln), reflectances of paints 10 %, haze 30 %; other numbers are parts or multiples of that.
 --index 100: no curve is named; a library of so many objects of four metals is built, built again in other bands from the abundances that
 its files hold, and asked with one thread and with two, and so is one of --copies times as many files."""
 import argparse
@@ -56,13 +57,23 @@ class Maker:
         path.write_text(self.scenario(path.stem, "masks", [1, 0, 0, 0], materials, mesh))
         return path
 
+    def other_materials(self, text, names, number, trial):
+        """A scenario whose materials are those of the library a little off, the same for all groups."""
+        if not self.o.wrong:
+            return text
+        rng = random.Random(f"{self.o.seed} wrong {number} {trial}")
+        for name in names:
+            text = text.replace(f'"{name}"', f'"true_{name}"')
+        return text + "".join(blind.other_material(name, self.o.wrong, rng) for name in sorted(names))
+
     def curve(self, number, trial):
         """obs.csv of an object in a random attitude in which it is lit more often than not."""
         rng = random.Random(f"{self.o.seed} curve {number} {trial}")
         mesh, materials = self.object(number)
         rows = []
         while not rows or not any(statistics.median(float(r["intensity"]) for r in rows if r["band"] == band) > 0 for band in {r["band"] for r in rows}):
-            (self.work / "true.toml").write_text(self.scenario("true", "rays", blind.random_attitude(rng), materials, mesh))
+            text = self.scenario("true", "rays", blind.random_attitude(rng), materials, mesh)
+            (self.work / "true.toml").write_text(self.other_materials(text, set(materials.values()), number, trial))
             blind.run(self.o.umov, "run", self.work / "true.toml", "-o", self.work / "truth", "--force", "-q")
             rows = blind.rows_of(self.work / "truth/lightcurve.csv")
         blind.observed(rows, self.o.snr, rng, self.work / "obs.csv")
@@ -84,9 +95,12 @@ def main():
     parser.add_argument("--snr", type=float, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--own", action="store_true")
+    parser.add_argument("--wrong", type=float, default=0)
     parser.add_argument("--copies", type=int, default=10)
     blind.add_places(parser)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov identify
+    if o.index and o.wrong:
+        parser.error("--index names nothing: it takes no --wrong")
     if o.copies < 2:
         parser.error("--copies: two at least, or there is no object more to be timed")
     work = blind.work_folder(o)

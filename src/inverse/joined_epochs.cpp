@@ -79,9 +79,8 @@ std::vector<Heap<Row>> heaps_of(const std::vector<Row> &rows,
   for (const Row &row : rows) {
     const std::size_t stretch = stretch_of[row.epoch];
     in_stretch.resize(std::max(in_stretch.size(), stretch + 1));
-    const auto found = std::ranges::find_if(in_stretch[stretch], [&](std::size_t k) {
-      return are_like(*out[k].rows.front(), row);
-    });
+    const auto found = std::ranges::find_if(
+        in_stretch[stretch], [&](std::size_t k) { return are_like(*out[k].rows.front(), row); });
     if (found != in_stretch[stretch].end()) {
       out[*found].rows.push_back(&row);
       continue;
@@ -205,8 +204,8 @@ void sort_by_time(ObservedCurve &curve) {
   const auto sort = [&](auto &rows) {
     for (auto &row : rows)
       row.epoch = place[row.epoch];
-    std::ranges::stable_sort(
-        rows, {}, [](const auto &row) { return std::pair(row.epoch, row.band); });
+    std::ranges::stable_sort(rows, {},
+                             [](const auto &row) { return std::pair(row.epoch, row.band); });
   };
   sort(curve.samples);
   sort(curve.counts);

@@ -8,8 +8,8 @@ namespace umov::jobs {
 
 /// What all attitudes at rest are compared with: a curve of over a hundred epochs with those joined
 /// between which the top of the object's narrowest glint changes by a quarter of the floor at most;
-/// else the curve itself. Not with clouds, of which each epoch has its own, nor with outliers, which
-/// a mean would spread.
+/// else the curve itself. Not with clouds, of which each epoch has its own, nor with outliers,
+/// which a mean would spread.
 ObservedCurve searched_curve(const ObservedCurve &curve, const Scene &scene,
                              const CurveErrors &errors);
 

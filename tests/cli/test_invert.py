@@ -140,6 +140,23 @@ def test_a_fit_that_chance_does_not_explain_is_not_determined(umov, scene, tmp_p
     assert any("may have been passed by" in note for note in found["small.csv"]["notes"])
 
 
+def test_a_dense_curve_is_searched_by_fewer_epochs_and_fitted_by_all(umov, scene, tmp_path):
+    """Two rows a second: next to the same directions of Sun and observer are one epoch of the search."""
+    assert umov("run", scene(TRUTHS[2], "masks", "truth", step=0.5), "-q").code == 0
+    observe(tmp_path, "obs.csv", 20, 5)
+    done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "-o", "answer", "--json", "--grid", "5000", *KNOWN)
+    assert done.code == 0, done.err
+    verdict = json.loads(done.out)
+    times = {r["time_utc"] for r in read_csv(tmp_path / "truth/lightcurve.csv") if float(r["sunlit"]) >= 0.5}
+    assert verdict["epochs"] == len(times)
+    assert 20 < verdict["epochs_searched"] < verdict["epochs"] / 2
+    assert any("are joined" in note for note in verdict["notes"])
+    assert len(Table.read(tmp_path / "answer/fit.ecsv")) == 3 * verdict["epochs"]
+    best = min(verdict["modes"], key=lambda m: apart(TRUTHS[2], m["q"]))
+    assert apart(TRUTHS[2], best["q"]) < max(0.5, 3 * best["sd_deg"])
+    assert sum(c["numbers"] for c in verdict["contributions"]) == verdict["dof"] + 4
+
+
 def test_folder_has_the_tables_and_says_what_it_is(umov, scene, tmp_path):
     assert umov("run", scene(TRUTHS[0], "rays", "truth", step=40), "-q").code == 0
     done = umov("invert", "pose", "truth/lightcurve.ecsv", "--scenario", "truth.toml", "-o", "answer", "--grid", "20000")

@@ -12,13 +12,13 @@ struct JoinLimits {
 };
 
 /// A curve of a body at rest whose epochs stand closer together than its light can change, with
-/// those of a stretch as one: the mean of their samples, the sum of their counts, at their mean time
-/// and directions. Rows are joined with their like: of one band, with errors within a factor of two,
-/// with and without q and u apart, counts by analysers that stand alike and exposures within a factor
-/// of two (each of a sequence of analysers at its own mean time). Sums of `counts` belong to no
-/// `set`. Over a stretch of a width x the light at its middle is not the mean, by x^2/24 of the
-/// curvature: of a normal lobe of slope s, (x/s)^2/24 of its light at the top. A curve that is not
-/// dense comes back as it is.
+/// those of a stretch as one: the mean of their samples, the sum of their counts, at their mean
+/// time and directions. Rows are joined with their like: of one band, with errors within a factor
+/// of two, with and without q and u apart, counts by analysers that stand alike and exposures
+/// within a factor of two (each of a sequence of analysers at its own mean time). Sums of `counts`
+/// belong to no `set`. Over a stretch of a width x the light at its middle is not the mean, by
+/// x^2/24 of the curvature: of a normal lobe of slope s, (x/s)^2/24 of its light at the top. A
+/// curve that is not dense comes back as it is.
 ObservedCurve joined_epochs(const ObservedCurve &curve, const JoinLimits &limits);
 
 } // namespace umov

@@ -66,8 +66,8 @@ TEST(JoinedEpochs, AMeanTellsModelsApartAsItsRowsDo) {
   std::normal_distribution<double> normal;
   for (std::size_t e = 0; e < 40; ++e)
     for (std::size_t band = 0; band < 2; ++band)
-      curve.samples.push_back(sample(e, band, 1 + 0.1 * normal(random),
-                                     0.2 + 0.02 * normal(random), 0.02 * normal(random)));
+      curve.samples.push_back(sample(e, band, 1 + 0.1 * normal(random), 0.2 + 0.02 * normal(random),
+                                     0.02 * normal(random)));
   const ObservedCurve few = joined_epochs(curve, limits);
   ASSERT_EQ(few.epochs.size(), 1u);
   ASSERT_EQ(few.samples.size(), 2u);
@@ -117,9 +117,9 @@ TEST(JoinedEpochs, RowsThatAreNotAlikeStayApart) {
   ObservedCurve curve = curve_of(4, 1e-6);
   curve.samples = {sample(0, 0, 1, 0.1, 0), sample(1, 0, 1, 0.1, 0), sample(2, 0, 1, 0.1, 0),
                    sample(3, 0, 1, 0.1, 0)};
-  curve.samples[1].i_sd = 0.3;                             // a worse one
+  curve.samples[1].i_sd = 0.3;                            // a worse one
   curve.samples[2].q = curve.samples[2].u = std::nan(""); // I alone
-  curve.samples[3].i_sd = 0.19;                            // like the first
+  curve.samples[3].i_sd = 0.19;                           // like the first
   const ObservedCurve few = joined_epochs(curve, limits);
   ASSERT_EQ(few.samples.size(), 3u);
   EXPECT_EQ(few.epochs.size(), 1u); // all next to the same place

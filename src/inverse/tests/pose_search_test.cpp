@@ -308,6 +308,41 @@ TEST(PoseSearch, TheAnswerDoesNotDependOnThreads) {
   EXPECT_EQ(one->samples.back().minus_2_log, three->samples.back().minus_2_log);
 }
 
+TEST(PoseSearch, WhenItExplainsNothing) {
+  PoseAnswer answer;
+  answer.measurements = 104;
+  answer.unknowns = 4;
+  answer.misfit = 199; // of 100, whose deviation is sqrt(200) = 14: unlikely, and less than twice
+  EXPECT_FALSE(explains_nothing(answer, 0.02));
+  answer.misfit = 201;
+  EXPECT_TRUE(explains_nothing(answer, 0.02));
+  answer.measurements = 9; // 11 of 5: 5 % by chance
+  answer.misfit = 11;
+  EXPECT_FALSE(explains_nothing(answer, 0.02));
+  answer.model_error = 0.081;
+  EXPECT_TRUE(explains_nothing(answer, 0.02));
+  EXPECT_FALSE(explains_nothing(answer, 0.03));
+  answer.model_error = 0.019;
+  EXPECT_FALSE(explains_nothing(answer, 0.001)); // of .005 at least
+}
+
+TEST(PoseSearch, WhereNothingFitsNoParticlesAreFollowed) {
+  // Light that goes up and down by three from one epoch to the next, as no box's does: many bad
+  // fits, of which none stands out.
+  ObservedCurve curve = pass(24);
+  observe(curve, Box(), {any_attitude(5, 1), {}}, 100, 3);
+  for (ObservedSample &s : curve.samples)
+    s.i *= s.epoch % 2 == 0 ? 3 : 1;
+  SearchOptions options = small();
+  options.errors.has_polarization = false;
+  options.largest_floor = 0.1;
+  const auto answer = search_pose(CurveModel(curve, Box(), {0, 1}), options);
+  ASSERT_TRUE(answer) << answer.error().text();
+  EXPECT_TRUE(explains_nothing(*answer, options.errors.floor));
+  EXPECT_FALSE(answer->is_broad);
+  EXPECT_FALSE(answer->modes.empty());
+}
+
 TEST(PoseSearch, NothingMeasuredIsSaid) {
   ObservedCurve curve = pass(3);
   const CurveModel model(curve, Box(), {0, 1});
