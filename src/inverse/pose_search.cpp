@@ -53,6 +53,7 @@ void keep_best(std::vector<Turning> &turnings, const std::vector<Comparison> &co
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return compared[k].chi2; });
   std::vector<double> sorted;
+  sorted.reserve(order.size());
   for (const std::size_t k : order)
     sorted.push_back(compared[k].chi2);
   const std::size_t kept = std::min(std::max(least, plausible(sorted)), order.size());
