@@ -87,6 +87,8 @@ def asked(o, work, meshes, trial):
     seconds = processor_s() - began
     same = blind.twins(truth, verdict["symmetries"])
     off = [min(blind.apart(t, m["q"]) for t in same) for m in verdict["modes"]]
+    if verdict["epochs_searched"] < verdict["epochs"]:
+        raise SystemExit("so many epochs that umov joins some: chi-square of their rows is not that of the fit")
     chi2 = noise.chi2(verdict["floor"], blind.table_rows(work / "answer/fit.ecsv"))
     told = told_deg(work / "answer/modes.ecsv", off.index(min(off)))
     out = Answer(off[0], min(off), told, len(off), blind.in_set(work / "answer/set95.ecsv", same), verdict["share_of_so3"],

@@ -42,14 +42,16 @@ class Away(typing.NamedTuple):
 class Noise(typing.NamedTuple):
     of_gains: float  # chi-square
     median: float  # intensity
+    told: float  # floor that was put in
     rows: dict  # of time and band
 
     def chi2(self, floor, fitted):
         """Of the truth (equation 3 of docs/theory/inverse.md), over the rows that a fit took (not those of the penumbra), with the floor that it came to."""
         out = self.of_gains
+        of_median = min(OF_MEDIAN, self.told / 2) * floor / self.told if self.told > 0 else min(OF_MEDIAN, floor / 2)
         for row in fitted:
             a = self.rows[row["time_utc"], row["band"]]
-            out += a.intensity**2 / (a.sd**2 + (floor * a.seen) ** 2 + (min(OF_MEDIAN, floor / 2) * self.median) ** 2)
+            out += a.intensity**2 / (a.sd**2 + (floor * a.seen) ** 2 + (of_median * self.median) ** 2)
             if row["q_scat"] != "nan":
                 out += sum(x * x for x in a.polarization) / (a.polarization_sd**2 + (floor / 2) ** 2)
         return out
@@ -64,7 +66,7 @@ def observed(rows, snr, floor, rng, path, zero_point_sd=ZERO_POINT_SD, typical=N
     mean = {band: typical or statistics.mean(float(r["intensity"]) for r in rows if r["band"] == band) for band in sorted(unit)}
     median = statistics.median(float(r["intensity"]) for r in rows if r["band"] in unit)
     gain = {band: 1 + zero_point_sd * rng.gauss(0, 1) for band in mean}
-    away = Noise(sum(((g - 1) / zero_point_sd) ** 2 for g in gain.values()), median, {})
+    away = Noise(sum(((g - 1) / zero_point_sd) ** 2 for g in gain.values()), median, floor, {})
     out = ["# pol_frame: equatorial", "time_utc,band,flux,flux_err,q,u,q_err,u_err"]
     for r in (r for r in rows if r["band"] in unit):
         true, m, scale = float(r["intensity"]), mean[r["band"]], unit[r["band"]]

@@ -2,31 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace umov {
 namespace {
 
-constexpr double alike = 2;        ///< errors and exposures within this factor
-constexpr double same_angle = 0.1; ///< of the unit vector of an analyser (cos 2a, sin 2a)
-/// Of the limits: rows whose mean directions are that close stand at one epoch. On the flank of a
-/// lobe a shift counts once, where a width counts squared.
-constexpr double same_place = 1.0 / 30;
+constexpr double alike = 2;                ///< errors and exposures within this factor
+constexpr double same_angle = 0.1;         ///< of the unit vector of an analyser (cos 2a, sin 2a)
 constexpr std::size_t open_stretches = 16; ///< so many sites may take turns
 
 Vec3<Gcrs> halfway(const ObservedEpoch &epoch) {
   return normalized(epoch.to_sun + epoch.to_observer);
 }
 
-bool are_close(const ObservedEpoch &a, const ObservedEpoch &b, const JoinLimits &limits,
-               double part) {
+bool are_close(const ObservedEpoch &a, const ObservedEpoch &b, const JoinLimits &limits) {
   const auto within = [](const Vec3<Gcrs> &x, const Vec3<Gcrs> &y, double angle) {
     const Vec3<Gcrs> off = x - y;
     return dot(off, off) <= angle * angle;
   };
-  return within(halfway(a), halfway(b), part * limits.halfway_rad) &&
-         within(a.to_sun, b.to_sun, part * limits.directions_rad) &&
-         within(a.to_observer, b.to_observer, part * limits.directions_rad);
+  return within(halfway(a), halfway(b), limits.halfway_rad) &&
+         within(a.to_sun, b.to_sun, limits.directions_rad) &&
+         within(a.to_observer, b.to_observer, limits.directions_rad);
 }
 
 /// The stretch of each epoch, stretches in order of their first epochs.
@@ -36,7 +33,7 @@ std::vector<std::size_t> stretches_of(const std::vector<ObservedEpoch> &epochs,
   for (std::size_t e = 0; e < epochs.size(); ++e) {
     std::size_t found = first.size();
     for (std::size_t k = first.size(); k > 0 && k + open_stretches > first.size(); --k)
-      if (are_close(epochs[first[k - 1]], epochs[e], limits, 1)) {
+      if (are_close(epochs[first[k - 1]], epochs[e], limits)) {
         found = k - 1;
         break;
       }
@@ -65,28 +62,47 @@ bool are_like(const ObservedCount &a, const ObservedCount &b) {
              same_angle;
 }
 
-/// Rows that are alike, in one stretch.
+/// Rows that are alike, in one stretch, none of them at the epoch of another.
 template <class Row> struct Heap {
-  std::size_t stretch = 0;
+  std::size_t channels = 0; ///< of each of their exposures: of less, one was saturated
   std::vector<const Row *> rows;
 };
+
+/// Rows of the epoch and band of each.
+template <class Row> std::vector<std::size_t> channels_of(const std::vector<Row> &rows) {
+  std::vector<std::size_t> out(rows.size());
+  const auto are_together = [&](std::size_t a, std::size_t b) {
+    return rows[a].epoch == rows[b].epoch && rows[a].band == rows[b].band;
+  };
+  for (std::size_t k = 0, end = 0; k < rows.size(); k = end) {
+    for (end = k + 1; end < rows.size() && are_together(k, end);)
+      ++end;
+    std::fill(out.begin() + static_cast<std::ptrdiff_t>(k),
+              out.begin() + static_cast<std::ptrdiff_t>(end), end - k);
+  }
+  return out;
+}
 
 template <class Row>
 std::vector<Heap<Row>> heaps_of(const std::vector<Row> &rows,
                                 const std::vector<std::size_t> &stretch_of) {
   std::vector<Heap<Row>> out;
   std::vector<std::vector<std::size_t>> in_stretch; // heaps
-  for (const Row &row : rows) {
+  const auto channels = channels_of(rows);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Row &row = rows[r];
     const std::size_t stretch = stretch_of[row.epoch];
     in_stretch.resize(std::max(in_stretch.size(), stretch + 1));
-    const auto found = std::ranges::find_if(
-        in_stretch[stretch], [&](std::size_t k) { return are_like(*out[k].rows.front(), row); });
+    const auto found = std::ranges::find_if(in_stretch[stretch], [&](std::size_t k) {
+      return out[k].channels == channels[r] && out[k].rows.back()->epoch != row.epoch &&
+             are_like(*out[k].rows.front(), row);
+    });
     if (found != in_stretch[stretch].end()) {
       out[*found].rows.push_back(&row);
       continue;
     }
     in_stretch[stretch].push_back(out.size());
-    out.push_back({stretch, {&row}});
+    out.push_back({channels[r], {&row}});
   }
   return out;
 }
@@ -159,24 +175,25 @@ ObservedEpoch mean_epoch(const std::vector<ObservedEpoch> &epochs,
   return out;
 }
 
-/// The epochs of a joined curve, those of a stretch at hand.
+/// The epochs of a joined curve. Rows of the same epochs stand at one, so that channels of one
+/// exposure share its transparency and the model's error; of other epochs they do not.
 class Places {
 public:
-  Places(const JoinLimits &limits, std::size_t stretches) : limits_(limits), of_(stretches) {}
-  /// Where rows with this mean epoch stand: with others of their stretch, if those are next to it.
-  std::size_t find_or_add(std::size_t stretch, const ObservedEpoch &epoch) {
-    for (const std::size_t k : of_[stretch])
-      if (are_close(all[k], epoch, limits_, same_place))
-        return k;
-    of_[stretch].push_back(all.size());
-    all.push_back(epoch);
-    return all.size() - 1;
+  template <class Row>
+  std::size_t find_or_add(const std::vector<ObservedEpoch> &epochs,
+                          const std::vector<const Row *> &rows) {
+    std::vector<std::size_t> of;
+    for (const Row *row : rows)
+      of.push_back(row->epoch);
+    const auto [at, is_new] = place_.try_emplace(std::move(of), all.size());
+    if (is_new)
+      all.push_back(mean_epoch(epochs, rows));
+    return at->second;
   }
   std::vector<ObservedEpoch> all;
 
 private:
-  JoinLimits limits_;
-  std::vector<std::vector<std::size_t>> of_;
+  std::map<std::vector<std::size_t>, std::size_t> place_;
 };
 
 template <class Row>
@@ -185,7 +202,7 @@ std::vector<Row> joined_rows(const std::vector<Row> &rows, const std::vector<Obs
   std::vector<Row> out;
   for (const Heap<Row> &heap : heaps_of(rows, stretch_of)) {
     out.push_back(joined(heap.rows));
-    out.back().epoch = places.find_or_add(heap.stretch, mean_epoch(epochs, heap.rows));
+    out.back().epoch = places.find_or_add(epochs, heap.rows);
   }
   return out;
 }
@@ -220,7 +237,7 @@ ObservedCurve joined_epochs(const ObservedCurve &curve, const JoinLimits &limits
   if (stretches == curve.epochs.size())
     return curve;
   ObservedCurve out = curve;
-  Places places(limits, stretches);
+  Places places;
   out.counts = joined_rows(curve.counts, curve.epochs, stretch_of, places);
   out.samples = joined_rows(curve.samples, curve.epochs, stretch_of, places);
   out.epochs = std::move(places.all);

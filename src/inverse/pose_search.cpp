@@ -168,10 +168,20 @@ Result<Peaks> peaks_of(const CurveModel &model, const CurveLikelihood &likelihoo
 struct Judged {
   std::span<const Turning> best;
   std::size_t of = 0;
-  /// Some attitude explains the curve. Else there is no posterior to follow to all its places, and
-  /// errors that are far too small make that a work of hours.
-  bool is_explained = true;
+  /// Whether an attitude of that chi-square explains the curve. If none does there is no posterior
+  /// to follow to all its places, and errors that are far too small make that a work of hours.
+  std::function<bool(double chi2)> explains = {};
 };
+
+/// Of all that was fitted and drawn.
+double least_chi2(const Peaks &peaks) {
+  double out = 1e300;
+  for (const PoseMode &mode : peaks.modes)
+    out = std::min(out, mode.chi2);
+  for (const PoseSample &draw : peaks.samples.draws)
+    out = std::min(out, draw.chi2);
+  return out;
+}
 
 /// Takes away the turnings that a few epochs rule out by e^20 and more: each further row adds to
 /// what speaks against them. Not of counts, whose variances are the model's. False if it was
@@ -244,13 +254,14 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
                              Freedom freedom, const Judged &judged, const SearchOptions &options) {
   PoseAnswer out;
   UMOV_ASSIGN(peaks, peaks_of(model, likelihood, fits, freedom, options));
+  const bool is_explained = !judged.explains || judged.explains(least_chi2(peaks));
   const double beside =
-      judged.is_explained ? evidence_beside(quick, likelihood, peaks, judged, options.threads) : 0;
+      is_explained ? evidence_beside(quick, likelihood, peaks, judged, options.threads) : 0;
   if (beside < 0)
     return tl::unexpected(stopped());
   auto &[modes, samples, is_settled] = peaks;
   constexpr double much = 0.01; // a fifth of what a set of 95 % may leave out
-  if (judged.of > 0 && judged.is_explained && (beside > much || !is_described(modes, samples))) {
+  if (judged.of > 0 && is_explained && (beside > much || !is_described(modes, samples))) {
     Samples all = inverse::sample_all(quick, model, likelihood, modes, options);
     if (all.draws.empty())
       return tl::unexpected(stopped());
@@ -333,14 +344,14 @@ public:
     return true;
   }
   [[nodiscard]] const CurveLikelihood &likelihood() const { return likelihood_; }
-  /// What is known of the best of some fits to all of the curve, before a posterior.
-  [[nodiscard]] PoseAnswer of_best(const std::vector<TurningFit> &fits) const {
-    PoseAnswer out;
-    out.chi2 = std::ranges::min(fits, {}, [](const TurningFit &f) { return f.at.chi2; }).at.chi2;
-    out.measurements = likelihood_.measurements();
-    out.unknowns = of_attitude;
-    tell(out);
-    return out;
+  /// Whether an attitude of that chi-square explains the curve.
+  [[nodiscard]] bool explain(double chi2) const {
+    PoseAnswer best;
+    best.chi2 = chi2;
+    best.measurements = likelihood_.measurements();
+    best.unknowns = of_attitude;
+    tell(best);
+    return !explains_nothing(best, options_.errors.floor);
   }
   void tell(PoseAnswer &answer) const {
     answer.errors = error_.errors;
@@ -486,9 +497,10 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
   UMOV_TRY(needs_measurements(errors.likelihood()));
   UMOV_ASSIGN(judged, search_grid(quick, options));
   UMOV_ASSIGN(fits, fits_of_all(models, judged, errors, options));
-  const bool is_explained = !explains_nothing(errors.of_best(fits), options.errors.floor);
   UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), fits, Freedom::Attitude,
-                             {judged, options.grid, is_explained}, options));
+                             {judged, options.grid,
+                              [&errors](double chi2) { return errors.explain(chi2); }},
+                             options));
   out.share_of_so3 = inverse::share_of(out.set95);
   errors.tell(out);
   if (&quick != &first && &quick != &model)

@@ -147,10 +147,10 @@ bool is_wide_alone(const PoseAnswer &answer, const ObservedCurve &curve,
 
 Judgement judge(const PoseAnswer &answer, const CurveModel &searched, const CurveModel &whole,
                 const CurveErrors &errors, const std::vector<BodySymmetry> &symmetries) {
-  const ObservedCurve &curve = whole.curve();
+  const ObservedCurve &curve = searched.curve();
   Judgement out;
-  out.epochs = curve.epochs.size();
-  out.epochs_searched = searched.curve().epochs.size();
+  out.epochs = whole.curve().epochs.size();
+  out.epochs_searched = curve.epochs.size();
   out.families = families_of(answer, symmetries);
   out.verdict = verdict_of(answer, out.families, errors.floor);
   // What a note says the data cannot tell is not told, however narrow a fit came out.
@@ -160,7 +160,7 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &searched, const Curv
     out.verdict = Verdict::Ambiguous;
   out.axis_spread_deg = axis_spread_deg(answer);
   const BestLight best = best_light(whole, answer);
-  out.null_test = null_test_of(curve, best.light);
+  out.null_test = null_test_of(whole.curve(), best.light);
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
   add_parts(whole.parts(), best, out);
   out.notes = limits_of(curve, errors, Asked::Attitude);
@@ -174,7 +174,7 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &searched, const Curv
     out.notes.push_back("no light tells the body from itself after " + s.text);
   note_null_test(out.null_test, out.notes);
   if (out.epochs_searched < out.epochs)
-    out.notes.push_back(fmt::format("the search has {} epochs for {}: those with next to the "
+    out.notes.push_back(fmt::format("the search has {} epochs of {}: those with next to the "
                                     "same directions of Sun and observer are joined",
                                     out.epochs_searched, out.epochs));
   if (!answer.is_settled)

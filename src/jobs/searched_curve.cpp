@@ -25,12 +25,19 @@ ObservedCurve searched_curve(const ObservedCurve &curve, const Scene &scene,
   constexpr std::size_t few = 100; // epochs, which are lit in no time
   if (curve.epochs.size() <= few || errors.has_clouds || errors.outlier_share > 0)
     return curve;
-  // (x/s)^2/24 = F/4, joined_epochs.h. Within a degree directions change what scatters widely by
+  // (x/s)^2/24 = F/16, joined_epochs.h. Within a degree directions change what scatters widely by
   // some per cent, and in proportion, so that means are right.
   constexpr double widest_rad = pi / 180, least_floor = 0.002;
-  const double x = narrowest_glint(scene) * std::sqrt(6 * std::max(errors.floor, least_floor));
-  const double halfway = std::min(x, widest_rad);
-  return joined_epochs(curve, {halfway, 2 * halfway});
+  const double x = narrowest_glint(scene) * std::sqrt(1.5 * std::max(errors.floor, least_floor));
+  double halfway = std::min(x, widest_rad);
+  // A burst changes within what a pass may join: no curve is to say less than one of a hundred
+  // epochs. After ten halves its directions are the same to a second of arc.
+  ObservedCurve out = joined_epochs(curve, {halfway, 2 * halfway});
+  for (int halves = 0; halves < 10 && out.epochs.size() < few; ++halves) {
+    halfway /= 2;
+    out = joined_epochs(curve, {halfway, 2 * halfway});
+  }
+  return out;
 }
 
 } // namespace umov::jobs

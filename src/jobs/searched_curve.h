@@ -6,10 +6,11 @@
 
 namespace umov::jobs {
 
-/// What all attitudes at rest are compared with: a curve of over a hundred epochs with those joined
-/// between which the top of the object's narrowest glint changes by a quarter of the floor at most;
-/// else the curve itself. Not with clouds, of which each epoch has its own, nor with outliers,
-/// which a mean would spread.
+/// What all attitudes at rest are compared with: a curve of over a hundred epochs with those of
+/// next to the same directions joined, down to a hundred at least; else the curve itself. Means
+/// over the narrowest glint of any surface are right to a sixteenth of the floor at its top, to
+/// half of it three slopes away. Not with clouds, of which each epoch has its own, nor with
+/// outliers, which a mean would spread.
 ObservedCurve searched_curve(const ObservedCurve &curve, const Scene &scene,
                              const CurveErrors &errors);
 

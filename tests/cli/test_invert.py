@@ -157,6 +157,19 @@ def test_a_dense_curve_is_searched_by_fewer_epochs_and_fitted_by_all(umov, scene
     assert sum(c["numbers"] for c in verdict["contributions"]) == verdict["dof"] + 4
 
 
+@pytest.mark.slow
+def test_a_burst_is_searched_by_a_hundred_epochs(umov, scene, tmp_path):
+    """Within a second directions move by less than the width of a glint, and what changes on its flank counts: a row more than a hundred must not say less."""
+    burst = ["--set", "time.start=2018-01-21T05:11:46Z", "--set", "time.stop=2018-01-21T05:11:47.1Z"]
+    assert umov("run", scene(TRUTHS[0], "masks", "truth", step=0.01), *burst, "-q").code == 0
+    observe(tmp_path, "obs.csv", 50, 6)
+    done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--json", "--grid", "1000", *KNOWN)
+    assert done.code == 0, done.err
+    verdict = json.loads(done.out)
+    assert verdict["epochs"] == len({r["time_utc"] for r in read_csv(tmp_path / "truth/lightcurve.csv")})
+    assert 100 <= verdict["epochs_searched"] <= verdict["epochs"]
+
+
 def test_folder_has_the_tables_and_says_what_it_is(umov, scene, tmp_path):
     assert umov("run", scene(TRUTHS[0], "rays", "truth", step=40), "-q").code == 0
     done = umov("invert", "pose", "truth/lightcurve.ecsv", "--scenario", "truth.toml", "-o", "answer", "--grid", "20000")

@@ -11,14 +11,15 @@ struct JoinLimits {
   double directions_rad = 0; ///< of the Sun and of the observer themselves
 };
 
-/// A curve of a body at rest whose epochs stand closer together than its light can change, with
-/// those of a stretch as one: the mean of their samples, the sum of their counts, at their mean
-/// time and directions. Rows are joined with their like: of one band, with errors within a factor
-/// of two, with and without q and u apart, counts by analysers that stand alike and exposures
-/// within a factor of two (each of a sequence of analysers at its own mean time). Sums of `counts`
-/// belong to no `set`. Over a stretch of a width x the light at its middle is not the mean, by
-/// x^2/24 of the curvature: of a normal lobe of slope s, (x/s)^2/24 of its light at the top. A
-/// curve that is not dense comes back as it is.
+/// A curve of a body at rest with the epochs of a stretch of next to the same directions as one:
+/// the mean of their samples, the sum of their counts, at their mean time and directions. Rows are
+/// joined with their like: of one band, with errors within a factor of two, with and without q and
+/// u apart, counts by analysers that stand alike, in exposures within a factor of two and with as
+/// many channels (each of a sequence of analysers at its own mean time). They belong to no `set`.
+/// Over a stretch of a width x the light at its middle is off from the mean by x^2/24 of the
+/// curvature: t slopes s from the middle of a normal lobe by (t^2 - 1) (x/s)^2/24 of it. What it
+/// changes by from one end to the other is no longer told. A curve that is not dense comes back as
+/// it is.
 ObservedCurve joined_epochs(const ObservedCurve &curve, const JoinLimits &limits);
 
 } // namespace umov

@@ -122,9 +122,9 @@ TEST(JoinedEpochs, RowsThatAreNotAlikeStayApart) {
   curve.samples[3].i_sd = 0.19;                           // like the first
   const ObservedCurve few = joined_epochs(curve, limits);
   ASSERT_EQ(few.samples.size(), 3u);
-  EXPECT_EQ(few.epochs.size(), 1u); // all next to the same place
-  EXPECT_NEAR(few.samples[0].i_sd, std::hypot(0.1, 0.19) / 2, 1e-12);
-  EXPECT_EQ(few.samples[1].i_sd, 0.3);
+  EXPECT_EQ(few.epochs.size(), 3u); // each at the times of its own
+  EXPECT_EQ(few.samples[0].i_sd, 0.3);
+  EXPECT_NEAR(few.samples[1].i_sd, std::hypot(0.1, 0.19) / 2, 1e-12); // of 0 and 3 s: 1.5 s
   EXPECT_TRUE(std::isnan(few.samples[2].q));
 }
 
@@ -167,6 +167,32 @@ TEST(JoinedEpochs, CountsOfAnAnalyserAddUpAtItsOwnTime) {
     sum += one.net;
   }
   EXPECT_EQ(sum, all);
+}
+
+TEST(JoinedEpochs, ChannelsOfTheSameExposuresStayTogether) {
+  // What moves the channels of an exposure together, as transparency does, moves the sums so.
+  ObservedCurve curve = curve_of(60, 1e-6);
+  for (std::size_t e = 0; e < 60; ++e)
+    for (const double analyser : {0.0, pi / 2})
+      if (e != 7 || analyser == 0) // saturated
+        curve.counts.push_back(count(e, analyser, 10));
+  curve.counts.push_back(count(59, pi / 2, 4)); // as the one before, in the same exposure
+  const ObservedCurve few = joined_epochs(curve, limits);
+  // 58 exposures of two channels, one of one, one of three.
+  ASSERT_EQ(few.counts.size(), 6u);
+  ASSERT_EQ(few.epochs.size(), 3u);
+  EXPECT_EQ(few.counts[0].net, 10);
+  EXPECT_EQ(few.counts[1].epoch, few.counts[2].epoch);
+  EXPECT_EQ(few.counts[1].net, 580);
+  EXPECT_EQ(few.counts[2].net, 580);
+  EXPECT_EQ(few.counts[5].net, 4);
+  // Sequences are of no exposure together, however many there are.
+  curve.counts.clear();
+  for (std::size_t e = 0; e < 60; ++e)
+    curve.counts.push_back(count(e, e % 2 == 0 ? 0 : pi / 2, 10));
+  const ObservedCurve turns = joined_epochs(curve, limits);
+  EXPECT_EQ(turns.counts.size(), 2u);
+  EXPECT_EQ(turns.epochs.size(), 2u);
 }
 
 TEST(JoinedEpochs, ACurveThatIsNotDenseIsAsItWas) {
