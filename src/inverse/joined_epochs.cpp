@@ -183,6 +183,7 @@ public:
   std::size_t find_or_add(const std::vector<ObservedEpoch> &epochs,
                           const std::vector<const Row *> &rows) {
     std::vector<std::size_t> of;
+    of.reserve(rows.size());
     for (const Row *row : rows)
       of.push_back(row->epoch);
     const auto [at, is_new] = place_.try_emplace(std::move(of), all.size());
