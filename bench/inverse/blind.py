@@ -247,12 +247,16 @@ def other_material(name, much, rng):
     return f"[material.true_{name}]\n" + "\n".join(f"{k} = {in_toml(v)}" for k, v in table.items()) + "\n"
 
 
+def with_other_materials(scenario, names, much, rng):
+    """A scenario whose materials of these names are a little off, each the same wherever it is."""
+    for name in names:
+        scenario = scenario.replace(f'"{name}"', f'"true_{name}"')
+    return scenario + "".join(other_material(name, much, rng) for name in sorted(names))
+
+
 def other_object(o, trial, scenario, mesh, path):
     """The scenario with materials and a mesh that are a little off."""
     rng = random.Random(f"{o.seed} wrong {trial}")
-    names = sorted(set(MATERIALS[o.object].values()))
-    for name in names:
-        scenario = scenario.replace(f'"{name}"', f'"true_{name}"')
     if o.object in BOXES:
         chamfered_box.write_other_mesh(mesh, path, 0.05 * o.wrong, math.radians(0.5) * o.wrong, rng)
     else:
@@ -262,7 +266,7 @@ def other_object(o, trial, scenario, mesh, path):
             if line.startswith("v "):
                 lines[k] = "v " + " ".join(f"{float(x) * f:.9g}" for x, f in zip(line.split()[1:], factor))
         path.write_text("\n".join(lines) + "\n")
-    return scenario.replace(str(mesh), str(path)) + "".join(other_material(name, o.wrong, rng) for name in names)
+    return with_other_materials(scenario.replace(str(mesh), str(path)), set(MATERIALS[o.object].values()), o.wrong, rng)
 
 
 def metals_in_toml():

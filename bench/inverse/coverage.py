@@ -30,6 +30,10 @@ def arc(rng):
     return begin, begin + (epochs - 0.5) * step, step
 
 
+def part_of_median(floor):
+    return min(OF_MEDIAN, floor / 2)
+
+
 class Away(typing.NamedTuple):
     """A row of data less the truth with the gains that it was made with."""
     intensity: float
@@ -48,7 +52,7 @@ class Noise(typing.NamedTuple):
     def chi2(self, floor, fitted):
         """Of the truth (equation 3 of docs/theory/inverse.md), over the rows that a fit took (not those of the penumbra), with the floor that it came to."""
         out = self.of_gains
-        of_median = min(OF_MEDIAN, self.told / 2) * floor / self.told if self.told > 0 else min(OF_MEDIAN, floor / 2)
+        of_median = part_of_median(self.told) * floor / self.told if self.told > 0 else part_of_median(floor)
         for row in fitted:
             a = self.rows[row["time_utc"], row["band"]]
             out += a.intensity**2 / (a.sd**2 + (floor * a.seen) ** 2 + (of_median * self.median) ** 2)
@@ -62,7 +66,7 @@ def observed(rows, snr, floor, rng, path, zero_point_sd=ZERO_POINT_SD, typical=N
     Returns how far that is from the truth."""
     lit = [r for r in rows if float(r["intensity"]) > 0]
     unit = {r["band"]: 3.1 * float(r["I"]) / float(r["intensity"]) for r in lit}  # of what is dark: of another epoch
-    of_median = min(OF_MEDIAN, floor / 2)
+    of_median = part_of_median(floor)
     mean = {band: typical or statistics.mean(float(r["intensity"]) for r in rows if r["band"] == band) for band in sorted(unit)}
     median = statistics.median(float(r["intensity"]) for r in rows if r["band"] in unit)
     gain = {band: 1 + zero_point_sd * rng.gauss(0, 1) for band in mean}

@@ -57,15 +57,6 @@ class Maker:
         path.write_text(self.scenario(path.stem, "masks", [1, 0, 0, 0], materials, mesh))
         return path
 
-    def other_materials(self, text, names, number, trial):
-        """A scenario whose materials are those of the library a little off, the same for all groups."""
-        if not self.o.wrong:
-            return text
-        rng = random.Random(f"{self.o.seed} wrong {number} {trial}")
-        for name in names:
-            text = text.replace(f'"{name}"', f'"true_{name}"')
-        return text + "".join(blind.other_material(name, self.o.wrong, rng) for name in sorted(names))
-
     def curve(self, number, trial):
         """obs.csv of an object in a random attitude in which it is lit more often than not."""
         rng = random.Random(f"{self.o.seed} curve {number} {trial}")
@@ -73,7 +64,10 @@ class Maker:
         rows = []
         while not rows or not any(statistics.median(float(r["intensity"]) for r in rows if r["band"] == band) > 0 for band in {r["band"] for r in rows}):
             text = self.scenario("true", "rays", blind.random_attitude(rng), materials, mesh)
-            (self.work / "true.toml").write_text(self.other_materials(text, set(materials.values()), number, trial))
+            if self.o.wrong:
+                other = random.Random(f"{self.o.seed} wrong {number} {trial}")
+                text = blind.with_other_materials(text, set(materials.values()), self.o.wrong, other)
+            (self.work / "true.toml").write_text(text)
             blind.run(self.o.umov, "run", self.work / "true.toml", "-o", self.work / "truth", "--force", "-q")
             rows = blind.rows_of(self.work / "truth/lightcurve.csv")
         blind.observed(rows, self.o.snr, rng, self.work / "obs.csv")

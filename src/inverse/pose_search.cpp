@@ -173,16 +173,6 @@ struct Judged {
   std::function<bool(double chi2)> explains = {};
 };
 
-/// Of all that was fitted and drawn.
-double least_chi2(const Peaks &peaks) {
-  double out = 1e300;
-  for (const PoseMode &mode : peaks.modes)
-    out = std::min(out, mode.chi2);
-  for (const PoseSample &draw : peaks.samples.draws)
-    out = std::min(out, draw.chi2);
-  return out;
-}
-
 /// Takes away the turnings that a few epochs rule out by e^20 and more: each further row adds to
 /// what speaks against them. Not of counts, whose variances are the model's. False if it was
 /// stopped.
@@ -254,7 +244,10 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
                              Freedom freedom, const Judged &judged, const SearchOptions &options) {
   PoseAnswer out;
   UMOV_ASSIGN(peaks, peaks_of(model, likelihood, fits, freedom, options));
-  const bool is_explained = !judged.explains || judged.explains(least_chi2(peaks));
+  out.chi2 = 1e300;
+  for (const PoseMode &mode : peaks.modes)
+    out.chi2 = std::min(out.chi2, mode.chi2);
+  const bool is_explained = !judged.explains || judged.explains(out.chi2);
   const double beside =
       is_explained ? evidence_beside(quick, likelihood, peaks, judged, options.threads) : 0;
   if (beside < 0)
@@ -284,9 +277,6 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
                                          samples.runs)
                     .balls;
   std::ranges::stable_sort(modes, std::ranges::greater{}, &PoseMode::weight);
-  out.chi2 = 1e300;
-  for (const PoseMode &mode : modes)
-    out.chi2 = std::min(out.chi2, mode.chi2);
   out.modes = std::move(modes);
   out.samples = std::move(samples.draws);
   out.log_evidence = samples.log_evidence;

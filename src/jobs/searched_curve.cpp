@@ -32,12 +32,12 @@ ObservedCurve searched_curve(const ObservedCurve &curve, const Scene &scene,
   double halfway = std::min(x, widest_rad);
   // A burst changes within what a pass may join: no curve is to say less than one of a hundred
   // epochs. After ten halves its directions are the same to a second of arc.
-  ObservedCurve out = joined_epochs(curve, {halfway, 2 * halfway});
-  for (int halves = 0; halves < 10 && out.epochs.size() < few; ++halves) {
-    halfway /= 2;
-    out = joined_epochs(curve, {halfway, 2 * halfway});
+  constexpr int most_halves = 10;
+  for (int halves = 0;; ++halves, halfway /= 2) {
+    ObservedCurve out = joined_epochs(curve, {halfway, 2 * halfway});
+    if (out.epochs.size() >= few || halves == most_halves)
+      return out;
   }
-  return out;
 }
 
 } // namespace umov::jobs

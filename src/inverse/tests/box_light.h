@@ -50,6 +50,13 @@ inline CurveErrors no_floor() {
   return out;
 }
 
+/// The same, of an instrument whose zero points are known.
+inline CurveErrors noise_alone() {
+  CurveErrors out = no_floor();
+  out.zero_point_sd = 1e-6;
+  return out;
+}
+
 /// A pass: the Sun stands, the observer moves by 100 deg.
 inline ObservedCurve pass(std::size_t epochs) {
   ObservedCurve out;

@@ -1,5 +1,7 @@
 // Parts and changes from the counts of analysers that follow each other.
 
+#include "inverse/tests/box_light.h"
+
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -70,13 +72,6 @@ ObservedCurve in_sequence(double metal, std::uint64_t seed) {
   return out;
 }
 
-CurveErrors errors_of_noise_alone() {
-  CurveErrors out;
-  out.floor = out.floor_median = 0;
-  out.zero_point_sd = 1e-6;
-  return out;
-}
-
 constexpr double truth = 0.3;
 constexpr int nights = 60;
 
@@ -84,7 +79,7 @@ TEST(CountFit, PartsComeBackWithinTheirErrorsWhateverTheBodyDidBetweenAnalysers)
   double sum = 0, square = 0, chi2 = 0, reduced_off = 0;
   for (int night = 0; night < nights; ++night) {
     ObservedCurve curve = in_sequence(truth, static_cast<std::uint64_t>(night));
-    const Unmixing found = unmix(curve, errors_of_noise_alone(), metal_and_paint());
+    const Unmixing found = unmix(curve, noise_alone(), metal_and_paint());
     ASSERT_EQ(found.groups.size(), 2u);
     const double pull = (found.groups[0].fraction - truth) / found.groups[0].fraction_err;
     sum += pull;
@@ -92,7 +87,7 @@ TEST(CountFit, PartsComeBackWithinTheirErrorsWhateverTheBodyDidBetweenAnalysers)
     chi2 += found.chi2 / nights;
     EXPECT_EQ(found.measurements, steps);
     curve.counts.clear();
-    const Unmixing of_sets = unmix(curve, errors_of_noise_alone(), metal_and_paint());
+    const Unmixing of_sets = unmix(curve, noise_alone(), metal_and_paint());
     reduced_off += (of_sets.groups[0].fraction - truth) / of_sets.groups[0].fraction_err / nights;
   }
   // Means of 60 pulls: of them 1/sqrt(60) = .13, of their squares sqrt(2/60) = .18; four sigma. The
@@ -112,7 +107,7 @@ TEST(CountFit, ChangesComeBackWithinTheirErrorsWhateverTheBodyDidBetweenAnalyser
   for (int night = 0; night < nights; ++night) {
     // A metal body, of which 1 - truth has turned into paint.
     const ObservedCurve curve = in_sequence(truth, static_cast<std::uint64_t>(100 + night));
-    const Health found = check_health(curve, errors_of_noise_alone(), members[0], changes, {});
+    const Health found = check_health(curve, noise_alone(), members[0], changes, {});
     const HealthRow &row = found.rows.front();
     const double pull = (row.change - (1 - truth)) / row.change_err;
     sum += pull;
@@ -128,15 +123,15 @@ TEST(CountFit, LightBelowItsErrorsTellsNeitherPartsNorChanges) {
   for (ObservedCount &one : curve.counts)
     one.fixed_variance = 1e14;
   const auto members = metal_and_paint();
-  EXPECT_EQ(unmix(curve, errors_of_noise_alone(), members).scale, 0);
+  EXPECT_EQ(unmix(curve, noise_alone(), members).scale, 0);
   const Health found =
-      check_health(curve, errors_of_noise_alone(), members[0], {{"x", members[1], 1, 0}}, {});
+      check_health(curve, noise_alone(), members[0], {{"x", members[1], 1, 0}}, {});
   EXPECT_EQ(found.rows.front().change_err, 0);
   EXPECT_LT(found.chi2, steps);
 }
 
 TEST(CountFit, LightIsSeenWhateverTheZeroPointsAre) {
-  CurveErrors errors = errors_of_noise_alone();
+  CurveErrors errors = noise_alone();
   errors.zero_point_sd = 3; // no brightness is known, its changes are
   const auto members = metal_and_paint();
   for (const bool has_counts : {true, false}) {
@@ -159,7 +154,7 @@ TEST(CountFit, AChangeThatTheScaleAloneExplainsIsNotSeen) {
   curve.samples.front().q = curve.samples.front().u = std::nan("");
   const auto members = metal_and_paint();
   const Health found =
-      check_health(curve, errors_of_noise_alone(), members[0], {{"x", members[1], 1, 0}}, {});
+      check_health(curve, noise_alone(), members[0], {{"x", members[1], 1, 0}}, {});
   EXPECT_EQ(found.rows.front().change_err, 0);
 }
 

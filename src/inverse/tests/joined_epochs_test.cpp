@@ -1,3 +1,5 @@
+#include "inverse/tests/box_light.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -40,13 +42,6 @@ ObservedSample sample(std::size_t epoch, std::size_t band, double i, double q, d
   return out;
 }
 
-CurveErrors without_floor() {
-  CurveErrors out;
-  out.floor = out.floor_median = 0;
-  out.zero_point_sd = 1e-6;
-  return out;
-}
-
 double minus_2_log(const ObservedCurve &curve, double i_a, double i_b, double q) {
   std::vector<double> i, of_q, of_u;
   for (std::size_t e = 0; e < curve.epochs.size(); ++e)
@@ -55,7 +50,7 @@ double minus_2_log(const ObservedCurve &curve, double i_a, double i_b, double q)
       of_q.push_back(q * in_i);
       of_u.push_back(0.1 * q * in_i);
     }
-  return CurveLikelihood(curve, without_floor()).compare({i, of_q, of_u}).minus_2_log;
+  return CurveLikelihood(curve, noise_alone()).compare({i, of_q, of_u}).minus_2_log;
 }
 
 TEST(JoinedEpochs, AMeanTellsModelsApartAsItsRowsDo) {
